@@ -23,7 +23,11 @@ class Frame(NamedTuple):
     width: int = 1280
     height: int = 900
     states: tuple[str, ...] = ()
-    """Addresses that are shown one after the other, each on all tabs."""
+    """Addresses that are shown one after the other, each on all tabs with a case."""
+    cases: tuple[str, ...] = ()
+    """Addresses that are shown one after the other."""
+    asked: tuple[str, ...] = ()
+    """Expressions of `page`, the document, and `view`, its window, evaluated in this order."""
 
 
 OBSERVER = """<!doctype html>
@@ -75,6 +79,12 @@ function look(frame) {
     others: [...page.querySelectorAll("#others button")].map(button => button.textContent),
     switched: switched(),
     states: JSON.parse(frame.dataset.states).map(address => onAllTabs(frame, address)),
+    cases: JSON.parse(frame.dataset.cases).map(address => {
+      view.explorer.show(address);
+      return answerOf(frame);
+    }),
+    asked: JSON.parse(frame.dataset.asked).map(
+      expression => Function("page", "view", `return ${expression}`)(page, view)),
   };
 }
 function answerOf({contentDocument: page, contentWindow: view}) {
@@ -87,11 +97,11 @@ function answerOf({contentDocument: page, contentWindow: view}) {
     motions: [...page.querySelectorAll("#stage-ends data")].map(({value}) => JSON.parse(value)),
   };
 }
-// What each tab answers when its button is pressed, from the tab of the address to this tab again.
+// What each tab with a case answers when its button is pressed, from that of the address on.
 function onAllTabs(frame, address) {
   const {contentDocument: page, contentWindow: view} = frame;
   view.explorer.show(address);
-  const tabs = [...page.querySelectorAll("[role=tab]")];
+  const tabs = [...page.querySelectorAll("[role=tab]:not(#tab-question)")];
   const first = tabs.findIndex(tab => tab.ariaSelected === "true");
   return [0, 1, 2, 3].map(k => {
     if (k) tabs[(first + k) % 3].click();
@@ -124,6 +134,8 @@ def shown(frames: dict[str, Frame], folder: Path) -> dict[str, dict]:
         texts.append(
             f'<iframe id="{name}" data-picture="{frame.picture}" width="{frame.width}" '
             f'data-states="{html.escape(json.dumps(frame.states))}" '
+            f'data-cases="{html.escape(json.dumps(frame.cases))}" '
+            f'data-asked="{html.escape(json.dumps(frame.asked))}" '
             f'height="{frame.height}" style="border: 0" '
             f'src="{page.name}{html.escape(frame.address)}"></iframe>'
         )

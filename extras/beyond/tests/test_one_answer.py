@@ -247,7 +247,7 @@ def explored(tmp_path_factory):
 HEADLINES = {
     "The restitution model is good enough:": "good",
     "The restitution model is not good enough:": "not good",
-    "Whether the restitution model is good enough has no answer:": "no answer",
+    "No verdict:": "no answer",
 }
 
 

@@ -15,6 +15,7 @@ import pytest
 from browser import Frame, shown
 
 import bouncing_ball_beyond
+from bouncing_ball import restitution
 from bouncing_ball.spring_damper import damping_ratio
 from bouncing_ball_beyond import OrbitNotFound, Rigid, limits
 from bouncing_ball_beyond.errors.error_law import free_impact
@@ -157,6 +158,44 @@ def test_each_tab_has_the_orbits_of_the_package(seen):
             shows = [values[f"spring-damper {name}"] for name in OBSERVED]
             computed = [np.ravel(getattr(found, name))[0] for name in OBSERVED]
             assert shows == pytest.approx(computed, rel=EXACT, abs=EXACT)
+
+
+def unstable_cases():
+    """The issue's case, and 299 others on the unstable side, below the saddle-node, too."""
+    yield 0.65, 100.0, 1.0, 2, "displacement"
+    rng = np.random.default_rng(157)
+    for k in range(299):
+        release = ("displacement", "force")[k % 2]
+        r = rng.uniform(0.05 if release == "displacement" else 0.14, 1.0)
+        n, ratio = int(rng.integers(1, 6)), np.exp(rng.uniform(np.log(2), np.log(1000)))
+        ends = [end(n, r) for end in (restitution.saddle_node, restitution.period_doubling)]
+        yield r, ratio, rng.uniform(0.3 * ends[0], 1.6 * ends[1]), n, release
+
+
+def test_the_explorer_refuses_where_python_refuses(tmp_path):
+    """Other orbits have the same phase and height, and none of this side gets a verdict."""
+    names = ("r", "w", "a", "n", "release")
+    addresses = tuple(
+        "#tab=orbit&side=unstable&" + "&".join(map("{}={}".format, names, case))
+        for case in unstable_cases()
+    )
+    text = page(read(Path(__file__).resolve().parents[1] / "figures/explorer.nc"))
+    answers = shown({"all": Frame(text, cases=addresses)}, tmp_path)["all"]["cases"]
+    seen = set()
+    for answer in answers:
+        found, values = called(answer["call"]), answer["values"]
+        kinds = {"below the saddle-node", "no orbit"}
+        if not isinstance(found, OrbitNotFound):
+            kinds = {"unstable" if found.admissible else "no ball follows it"}
+            shows = [values[f"spring-damper {name}"] for name in OBSERVED]
+            computed = [np.ravel(getattr(found, name))[0] for name in OBSERVED]
+            assert shows == pytest.approx(computed, rel=EXACT, abs=EXACT)
+        state, _, why = values["spring-damper state"].partition(": ")
+        assert state in kinds, answer["call"]
+        assert bool(why) == (state == "no ball follows it")
+        assert answer["verdict"].startswith("No verdict: no ball stays on the ")
+        seen.add(state)
+    assert {"below the saddle-node", "unstable", "no ball follows it"} <= seen
 
 
 def test_the_physical_tab_says_what_on_shaker_says(seen):

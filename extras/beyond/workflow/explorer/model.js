@@ -251,9 +251,11 @@ function multipliersOf(trace, determinant) {
 // As `is_stable` of the replication: without damping, where the determinant is 1, marginally.
 const isStable = (trace, determinant) =>
   Math.abs(trace) < 1 + determinant - 1e-9 && determinant < 1 + 1e-9;
-// What an orbit at Λ is, in one word for each model.
-function stateOf({exists, is_stable, trace, determinant, amplitude}, limits) {
+const NO_BALL = "no ball follows it";
+// What an orbit at Λ is, in words for each model.
+function stateOf({exists, is_stable, trace, determinant, amplitude, obstacle}, limits) {
   if (!exists) return amplitude < limits.saddle_node ? "below the saddle-node" : "no orbit";
+  if (obstacle) return `${NO_BALL}: ${obstacle}`;
   if (!is_stable) return trace < 0 ? "doubled" : "unstable";
   return determinant > 1 - 1e-9 ? "marginally stable" : "stable";
 }
@@ -291,7 +293,7 @@ function contactState(contact, point, s) {
 
 function contactOrbit(point, contact, n) {
   const {amplitude, phase, duration, u, x, trace, determinant} = point;
-  const orbit = described(n, amplitude, phase, duration, u + x, trace, determinant, {});
+  const orbit = described(n, amplitude, phase, duration, u + x, trace, determinant, {contact});
   orbit.inContact = s => contactState(contact, point, s).height;
   orbit.state = s => contactState(contact, point, s);
   if (orbit.max_height < amplitude) orbit.max_height = Math.max(orbit.max_height, highest(orbit));
@@ -392,10 +394,11 @@ function contactModel(contact) {
     // Without damping the orbits begin at Λ = 0, without a bifurcation.
     saddleNode(n) { return contact.zeta ? branchPoint(this.fold(n), contact, n).amplitude : 0; },
     periodDoubling(n) { return branchPoint(this.flip(n), contact, n).amplitude; },
+    // Below the saddle-node there is none, even if a branch of long contacts comes down so far.
     orbit(n, amplitude, side) {
-      const eps = excessAt(contact, n, amplitude, side, this.fold(n));
+      const eps = amplitude < this.saddleNode(n) ? NaN : excessAt(contact, n, amplitude, side, this.fold(n));
       const orbit = contactOrbit(branchPoint(eps, contact, n), contact, n);
-      return {...orbit, n, amplitude, excess: eps};
+      return {...orbit, n, amplitude};
     },
   };
 }
@@ -415,30 +418,35 @@ function permanentContact(contact) {
   return Math.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / Math.hypot(1, lag);
 }
 
-// Whether nothing comes between, by samples only.
-function sampledAdmissible(orbit, samples = 600) {
-  if (!orbit.exists || !(orbit.relative_impact_velocity < 0)) return false;
-  const {amplitude, phase, contact_duration: end} = orbit, period = 2 * Math.PI * orbit.n;
-  // A ball that is released below the table's level rises through it once.
-  for (let k = 1, above = false; k < samples; k++) {
-    const s = k * period / samples, rises = heightAt(orbit, s) > amplitude * Math.sin(phase + s);
-    if (s > end && above && !rises) return false;
-    above = s > end && rises;
-  }
-  for (let k = 1; orbit.state && k < 64; k++)
-    if (orbit.state(k * end / 64).grip <= 0) return false;
-  return true;
+// Why no ball follows an orbit, empty if a ball does: it does not land, its contact has an earlier
+// release, or its flight an earlier impact. Both are the first zeros that a ball on the stage meets.
+const EARLIER = 1e-6;
+function obstacleOf({exists, n, amplitude, phase, contact_duration: lasts, bounce_velocity, bounceHeight,
+  relative_impact_velocity: u, contact}) {
+  if (!exists) return "";
+  if (!(u < 0)) return "the ball does not land";
+  if (contact && !(departByContact(contact, amplitude, phase, u).duration > lasts * (1 - EARLIER)))
+    return "a contact ends earlier";
+  const leaves = phase + lasts, [x, y] = tableAt(leaves, amplitude), flight = TURN * n - lasts;
+  const d = contact && !contact.sine ? 0 : bounceHeight - y;
+  const {hang} = land({v: bounce_velocity - x, x, y, d}, amplitude, contact ? lagOf(contact) : 0);
+  // An orbit of the corrected model lands at the level of its own table.
+  return hang > flight - EARLIER - (contact ? 0 : lasts) ? "" : "a flight passes below the table";
 }
+
+// A ball stays on an orbit that it can follow and that is stable.
+const isMotion = ({exists, obstacle, is_stable}) => exists && !obstacle && is_stable;
 
 // All that the page shows of one state.
 function answer({contact, amplitude, n, side = "stable"}) {
   const own = ownRestitution(contact), signature = signatureOf(contact);
   const models = [contactModel(contact), restitutionModel(own), correctedModel(signature)];
   const orbits = models.map(model => model.orbit(n, amplitude, side));
+  for (const orbit of orbits) orbit.obstacle = obstacleOf(orbit);
   const limits = models.map(m => ({saddle_node: m.saddleNode(n), period_doubling: m.periodDoubling(n)}));
   const thresholds = [permanentContact(contact), 1, 1];
   const value = (name, k) => name === "permanent_contact" ? thresholds[k]
-    : name in limits[k] ? limits[k][name] : orbits[k].exists ? orbits[k][name] : NaN;
+    : name in limits[k] ? limits[k][name] : orbits[k].exists && !orbits[k].obstacle ? orbits[k][name] : NaN;
   // Errors of a simple model (Eqs. 37 and 38): negative where it has too much. That of a phase is a
   // share of a period.
   const errors = k => Object.fromEntries(Object.keys(QUANTITIES).map(name => [name,

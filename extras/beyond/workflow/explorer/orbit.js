@@ -5,35 +5,40 @@ const NAMES = ["spring-damper", "restitution", "corrected"];
 // Of their dots: each is seen where they lie upon each other.
 const SIZES = [8, 5.5, 3.5];
 
-// What a ball does that starts next to an unstable orbit, as far as the page follows contacts.
+// What a ball does that starts next to an orbit on which no ball stays, as far as the page follows contacts.
 const BESIDE = 1e-3;
-function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
+function insteadOf(orbit, {contact}) {
+  const {amplitude, phase, impact_velocity, relative_impact_velocity: u} = orbit;
+  if (!(u < 0) || isMotion(orbit)) return "";
   const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
-  return SAID[end.kind](end);
+  return ` A ball that starts next to it ${SAID[end.kind](end)}.`;
 }
 
 // Whether the restitution model is good enough, and the verdict as text.
 function verdictOf(found, question) {
-  const {n, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = found;
+  const {n, side, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = found;
   const [exact, simple] = found.orbits, error = found.errors.max_height, other = found.corrected.max_height;
   const heights = [exact, simple].map(orbit => orbit.max_height * (physical?.length ?? 1));
-  const instead = exact.exists && !exact.is_stable ? ` A ball that starts next to it ${insteadOf(exact, found)}.` : "";
-  if (ofContact === ofSimple && !exact.is_stable)
-    return ["none", "Whether the restitution model is good enough has no answer: no ball stays on the "
-      + `${n}-T orbit of either model (${ofContact}).${instead}`];
+  const instead = insteadOf(exact, found);
+  const alike = ofContact === ofSimple || Boolean(exact.obstacle && simple.obstacle);
+  if (side === "unstable" || (alike && !isMotion(exact)))
+    return ["none", `No verdict: no ball stays on the ${n}-T orbit of either model (${
+      ofContact === ofSimple ? ofContact : `restitution: ${ofSimple}; contact: ${ofContact}`}).${instead}`];
   const within = Math.abs(error) <= tolerance;
   const compared = `on the ${ofContact} ${n}-T orbit the maximum height is ${lowerBy(error, tolerance)} a restitution `
     + `coefficient, ${within ? "within" : "beyond"} the tolerance of ${shown(100 * tolerance)}% `
     + `(${heightsOf(...heights, physical && "m")})`;
-  if (ofContact === ofSimple && within) return [true, `The restitution model is good enough: ${compared}.`];
+  if (alike && within) return [true, `The restitution model is good enough: ${compared}.`];
   const corrected = ofContact !== ofCorrected || !(Math.abs(other) <= tolerance)
     ? ". The corrected model is not good enough, either: simulate the contact."
     : exact.is_stable ? `. The height is ${lowerBy(other, tolerance)} the corrected model, which is good enough.`
       : ". The corrected model agrees with the contact.";
-  return [false, "The restitution model is not good enough: " + (ofContact === ofSimple ? compared
+  return [false, "The restitution model is not good enough: " + (alike ? compared
     : `the ${n}-T orbit in this model: ${ofSimple}, on the contact: ${ofContact}`) + corrected + instead];
 }
 
+// Full lines are for balls: an orbit that is stable, and that a ball follows.
+const isFull = orbit => isMotion({...orbit, obstacle: orbit.is_stable ? obstacleOf(orbit) : ""});
 function drawBranch(found, {n, amplitude, physical: scales}) {
   const [contact, simple, corrected] = found.models;
   const top = 1.15 * Math.max(amplitude, 1.2,
@@ -46,16 +51,17 @@ function drawBranch(found, {n, amplitude, physical: scales}) {
     for (const side of ["unstable", "stable"]) {
       const start = model.saddleNode(n), turned = {true: [], false: []};
       for (let k = 0; k <= 160; k++) {
-        const lam = start + (top - start) * (k / 160) ** 2, at = model.orbit(n, lam, side);
+        const lam = start + (top - start) * (k / 160) ** 2, at = model.orbit(n, lam, side), isOn = isFull(at);
         for (const stable of [true, false])
-          turned[stable].push(at.is_stable === stable ? [lam, factor * at.phase] : [NaN, NaN]);
+          turned[stable].push(isOn === stable ? [lam, factor * at.phase] : [NaN, NaN]);
       }
       plot.line(turned[true], `curve ${kind}`);
       plot.line(turned[false], `curve unstable ${kind}`);
     }
   const points = contact.drawn(n), place = at => [at.amplitude, factor * at.phase];
+  const isOn = points.map(at => at.amplitude <= top && isFull(contactOrbit(at, found.contact, n)));
   for (const stable of [true, false])
-    plot.line(points.map(at => isStable(at.trace, at.determinant) === stable ? place(at) : [NaN, NaN]),
+    plot.line(points.map((at, k) => isOn[k] === stable ? place(at) : [NaN, NaN]),
       `curve ${stable ? "" : "unstable "}spring-damper`);
   contact.bifurcations(n).forEach((at, k) => plot.mark(["circle", "square"][k], ...place(at), "bifurcation"));
   found.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, factor * orbit.phase, `dot ${NAMES[k]}`, SIZES[k]));
@@ -77,7 +83,8 @@ function drawMotion(found, {n, amplitude, physical: scales}) {
     + NAMES.map((name, k) => `${name} ${shown(up(found.orbits[k].max_height), 4)}`).join(", ") + ".");
   plot.line(times.map(t => [across(t), up(amplitude * Math.sin(t))]), "curve table");
   curves.forEach((curve, k) => curve
-    && plot.line(times.map((t, i) => [across(t), up(curve[i])]), `curve ${NAMES[k]}`));
+    && plot.line(times.map((t, i) => [across(t), up(curve[i])]),
+      `curve ${isMotion(found.orbits[k]) ? "" : "unstable "}${NAMES[k]}`));
   const movers = found.orbits.map((orbit, k) => orbit.exists
     ? plot.add("circle", {class: `dot ${NAMES[k]}`, r: SIZES[k], cx: -20, cy: -20}) : null);
   const table = plot.add("rect", {class: "dot table", width: 18, height: 3, x: -40, y: -40});
@@ -146,7 +153,7 @@ function fillTables(found, question) {
     : "Times Ωt, lengths Ω²z/g, velocities Ωż/g";
   $("orbit-rows").replaceChildren(
     row("stability", cells((o, l, k) => [found.states[k], found.states[k], "state"])),
-    row("admissible (sampled only)", cells(o => [!o.exists ? "no orbit" : sampledAdmissible(o) ? "yes" : "no"])),
+    row("admissible", cells(o => [!o.exists ? "no orbit" : o.obstacle ? `no: ${o.obstacle}` : "yes", !o.obstacle, "admissible"])),
     row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
     row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
     ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [written(key, o[key]), o[key], key]))),
@@ -198,25 +205,24 @@ function loadsOf(orbit) {
   return {depth, force};
 }
 
-// Numbers n of periods for which the restitution model has a stable n-T orbit at this Λ.
+// Numbers n of periods for which the restitution model has an n-T orbit at this Λ on which a ball stays.
 const othersOf = ({models: [, simple]}, {amplitude}) => Array.from({length: RANGES.n[1]}, (_, k) => k + 1)
-  .filter(n => simple.saddleNode(n) <= amplitude && amplitude < simple.periodDoubling(n));
+  .filter(n => isFull(simple.orbit(n, amplitude, "stable")));
 
 // The position of Λ on the range of stable n-T orbits of the restitution model, and what to ask outside.
 function positionOf({models: [, simple], states}, {n, amplitude}, others) {
   const low = simple.saddleNode(n), high = simple.periodDoubling(n);
   const says = `Position of Λ = ${shown(amplitude, 4)}: ${shown((amplitude - low) / (high - low), 3)}, where 0 is the `
     + `saddle-node of the restitution model, Λ = ${shown(low, 4)}, and 1 its period doubling, Λ = ${shown(high, 4)}.`;
-  if (others.includes(n)) return says + (others.length > 1 ? " Other n with a stable orbit at this Λ:" : "");
-  return `${says} Outside of 0 to 1 this model has no stable ${n}-T orbit (${states[1]}; the contact: ${states[0]}). `
+  if (others.includes(n)) return `${says} The n with a stable orbit at this Λ:`;
+  return `${says} Here a ball stays on no ${n}-T orbit of this model (${states[1]}; the contact: ${states[0]}). `
     + (others.length ? "Ask for an n with a stable orbit at this Λ:" : "At this Λ it has no stable orbit with n up to "
       + `${RANGES.n[1]}: the tab Stage follows balls.`);
 }
 
 // What the reader should know of the contact besides.
 const notesOf = ({orbits: [orbit], contact: {zeta, omega, release}}, {n}) => [
-  ...orbit.exists && !sampledAdmissible(orbit)
-    ? [`the ${n}-T orbit is inadmissible (an earlier impact occurs), so that no ball stays on it`] : [],
+  ...orbit.obstacle ? [`the ${n}-T orbit is inadmissible (${orbit.obstacle}), so that no ball stays on it`] : [],
   ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
   ...release === "displacement" && zeta > 0
     ? ["before its release at δ = 0 this contact pulls the ball; a measured contact ends where its force is zero"] : [],

@@ -23,7 +23,7 @@ function endInWords({kind, periods, impacts}) {
 // How many of the starts end how, in one sentence: first on the contact's n-T orbit, `orbit`, if it is
 // stable and admissible, then on the other ends, the most frequent first.
 function endsOfStarts(contact, amplitude, orbit) {
-  const stays = orbit.exists && orbit.is_stable && sampledAdmissible(orbit);
+  const stays = isMotion(orbit);
   const known = stays ? {at: orbit.phase, u: orbit.relative_impact_velocity, periods: orbit.n} : null;
   const own = `on the ${orbit.n}-T orbit`, counts = new Map(stays ? [[own, 0]] : []);
   const fast = fastest(contact, amplitude);

@@ -47,7 +47,6 @@ html_theme = "furo"
 html_title = "A ball on a vibrating table"
 html_static_path = ["site.css"]
 html_css_files = ["site.css"]
-html_extra_path = ["../figures/explorer.html"]
 html_show_copyright = False
 html_show_sourcelink = False
 html_copy_source = False
@@ -178,9 +177,22 @@ def home(app, failure):
             shutil.copyfile(path, folder / "figures" / path.name)
 
 
+def explorer(app, failure):
+    """The explorer is at the top of the site, where its ways out lead to pages of the site."""
+    folder = Path(EXPLORER).parent
+
+    def to_page(found):
+        return f'href="{os.path.normpath(folder / found[1])}.html"'
+
+    text = (ROOT / EXPLORER).read_text(encoding="utf-8")
+    text = re.sub(r'href="(\.\./[^"]*)\.md"', to_page, text)
+    (Path(app.outdir) / "explorer.html").write_text(text, encoding="utf-8")
+
+
 def setup(app):
     """Called by Sphinx."""
     app.connect("source-read", prepare)
     app.connect("autodoc-process-docstring", plain)
     app.connect("build-finished", home)
+    app.connect("build-finished", explorer)
     app.add_html_math_renderer("mathml", mathml(False), mathml(True))

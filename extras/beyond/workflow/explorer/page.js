@@ -10,7 +10,7 @@ const SELECTS = ["model", "pace", "view", "units", "moves", "touch"];
 // Choices that give the same case otherwise.
 const LIKEWISE = ["tab", "moves", "touch"];
 // Values whose sliders are logarithmic.
-const LOGARITHMIC = ["w", "k", "stroke", "time"];
+const LOGARITHMIC = ["stiff", "w", "k", "stroke", "time"];
 let current = DEFAULTS;
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
@@ -35,6 +35,18 @@ function say([good, text]) {
   $("verdict").replaceChildren(strong, rest.join(""));
 }
 
+// The scene that is on the stage, or was the last one, is marked, and leads to the next.
+let scene = null;
+function lead(name) {
+  scene = name ?? scene;
+  $("look").textContent = SCENES[name]?.look ?? "Balls on one table.";
+  const links = [...document.querySelectorAll(".scenes a")];
+  for (const link of links) link.setAttribute("aria-current", link.hash === `#scene=${name}`);
+  const next = links[links.findIndex(link => link.hash === `#scene=${scene}`) + 1];
+  $("next").textContent = next ? `Next: ${next.textContent}` : "Next: your own ball";
+  $("next").href = next?.hash ?? "#tab=design";
+}
+
 function show(hash, kept = DEFAULTS) {
   clearTimeout(counting);
   clearTimeout(citing);
@@ -50,12 +62,11 @@ function show(hash, kept = DEFAULTS) {
     $(`tab-${tab}`).tabIndex = on ? 0 : -1;
     $(`panel-${tab}`).hidden = !on;
   }
-  const onStage = state.tab === "stage";
-  for (const id of ["starts", "position", "others"]) $(id).hidden = onStage;
-  $("sides").hidden = state.tab !== "orbit";
-  $("design-answer").hidden = state.tab !== "design";
-  for (const id of ["motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
-  for (const id of ["stage-views", "slice-views", "look", "stage-key"]) $(id).hidden = !onStage;
+  const onStage = state.tab === "stage", asks = state.tab === "question";
+  document.body.dataset.tab = state.tab;
+  for (const part of document.querySelectorAll("[data-tabs]")) part.hidden = !part.dataset.tabs.split(" ").includes(state.tab);
+  for (const id of ["play", "verdict"]) $(id).hidden = false;
+  $("h-motion").textContent = asks ? "Which ball flies higher?" : "One cycle";
   $("call-name").textContent = "The same with bouncing_ball_beyond in Python:";
   if (why) return refuse(why);
   $("refused").textContent = refused.length ? `Left out: ${refused.join(", ")}.` : "";
@@ -64,21 +75,26 @@ function show(hash, kept = DEFAULTS) {
   if (onStage) {
     const {units, f} = state;
     const same = name => hashOf({...parse(`#scene=${name}`).state, units, f}) === hashOf(state);
-    $("look").textContent = SCENES[Object.keys(SCENES).find(same)]?.look ?? "Balls on one table.";
+    lead(Object.keys(SCENES).find(same));
     return showStage(state);
   }
   play(false);
   stage = null;
+  if (asks) return showQuestion(state);
   const question = questionOf(state), found = answer(question);
   say(verdictOf(found, question));
   const others = othersOf(found, question);
   $("position").textContent = positionOf(found, question, others);
-  $("others").replaceChildren(...others.filter(n => n !== state.n).map(n => {
+  // The button that was pressed is there still, and keeps the focus.
+  const pressed = $("others").contains(document.activeElement);
+  $("others").replaceChildren(...others.map(n => {
     const button = document.createElement("button");
     button.textContent = `n = ${n}`;
+    button.setAttribute("aria-pressed", n === state.n);
     button.addEventListener("click", () => change("n", n));
     return button;
   }));
+  if (pressed) $("others").querySelector("[aria-pressed=true]")?.focus();
   $("starts").textContent = "Following balls with other starts …";
   count = () => {
     $("starts").textContent = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
@@ -153,8 +169,8 @@ document.querySelectorAll("input[inputmode]").forEach(typed => typed.addEventLis
     const [low, high] = rangeOf(typed.dataset.name, current.tab);
     const whole = WHOLE.includes(typed.dataset.name) ? "whole " : "";
     const label = document.querySelector(`label[for=${typed.id}]`).textContent;
-    const units = Object.keys(UNITS[typed.dataset.name] ?? {}).join(", ");
-    refuse(`${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}`
+    const units = Object.keys(UNITS[typed.dataset.name] ?? {}).join(", "), ways = otherwise(typed.value);
+    refuse(ways.length ? `${label}: instead of ${typed.value.trim()} write ${ways.join(" or ")}.` : `${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}`
       + `${units && `, alone or with a unit: ${units}`}.`);
   } else change(typed.dataset.name, numberOf(typed.value, typed.dataset.name));
 }));

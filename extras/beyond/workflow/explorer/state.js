@@ -6,13 +6,13 @@ const $ = id => document.getElementById(id);
 // The stage's: phase and velocity of the first impact, number of balls, by how much each of them
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
-  tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, release: "force", side: "stable",
+  tab: "question", stiff: 5, r: 0.85, w: 10, a: 0.8, n: 1, release: "force", side: "stable",
   m: 20, f: 20, moves: "stroke", acc: 0.8, stroke: 1, touch: "time", k: 1e5, time: 1.4, t: 1,
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
   units: "physical",
 };
 const RANGES = {
-  r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
+  stiff: [2, 1000], r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
   m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], stroke: [1e-9, 1e9], k: [1e-9, 1e18],
   time: [1e-9, 1e9], t: [1e-4, 99],
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
@@ -24,7 +24,7 @@ const REFERENCES = Object.fromEntries(["references", "quantities", "scenes"].map
   name => [name, JSON.parse($(name).textContent)]));
 const {quantities: QUANTITIES, scenes: SCENES} = REFERENCES;
 const CHOICES = {
-  tab: ["design", "orbit", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
+  tab: ["question", "design", "orbit", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
   model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
   units: ["physical", "dimensionless"],
 };
@@ -46,22 +46,31 @@ const UNITS = {
   time: {ms: 1, s: 1e3, "µs": 1e-3, "μs": 1e-3, us: 1e-3}, m: {g: 1, kg: 1e3, mg: 1e-3}, t: {"%": 1},
 };
 
-// A number, maybe with its unit. A decimal comma is read as a point. NaN for 1,500, which is 1.5 or
-// 1500, and for another unit.
+// How else to write a number with commas between thousands: 1,500 is 1500 or 1.5.
+function otherwise(text) {
+  const [, begin, more, rest] = /^\s*([-+−]?[1-9]\d*)((?:,\d{3})+)(\.\d*)?(?!\d)/.exec(text) ?? [];
+  if (!begin) return [];
+  const whole = begin + more.replaceAll(",", "") + (rest ?? "");
+  return rest || more.length > 4 ? [whole] : [whole, String(Number(`${begin.replace("−", "-")}.${more.slice(1)}`))];
+}
+// A number, maybe with its unit. A decimal comma is read as a point, and the sign − as a hyphen. NaN for
+// 1,500, which is 1.5 or 1500, and for another unit.
 function numberOf(text, name) {
-  const [, digits, unit] = /^\s*([-+]?[\d.,]+(?:e[-+]?\d+)?)\s*(\S*)\s*$/i.exec(text) ?? [];
-  if (!digits || /^[1-9]\d*,\d{3}$/.test(digits)) return NaN;
+  const [, digits, unit] = /^\s*([-+]?[\d.,]+(?:e[-+]?\d+)?)\s*(\S*)\s*$/i.exec(text.replaceAll("−", "-")) ?? [];
+  if (!digits || otherwise(digits).length) return NaN;
   const value = Number(digits.replace(",", "."));
   return unit ? nearest(value * (UNITS[name]?.[unit] ?? NaN), 12) : value;
 }
 
 // The state of a hash, and what in it was no value: that has its default. Names that are not in the
-// hash have the values of `kept`. A scene is a state of the stage by its name. A hash with values and
+// hash have the values of `kept`. Without a hash the page begins with its question. A scene is a state of the stage by its name. A hash with values and
 // without a tab is a dimensionless case. Its contact ends as in the paper, as that of a scene or of a
 // stage without a release does. What the tab does not use is left out, too.
 function parse(hash, kept = DEFAULTS) {
   const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
-  const state = {...kept, ...scene?.state}, refused = [];
+  const begins = kept === DEFAULTS && (hash.length < 2 || given.get("tab") === "question");
+  // Behind the question lies the case of the first tab with inputs.
+  const state = {...begins ? likewise({...kept, tab: "design"}, {tab: "question"}) : kept, ...scene?.state}, refused = [];
   if (scene) state.tab = "stage";
   else if (![...given].every(([name]) => name === "scene")) state.tab = "orbit";
   const tab = given.get("tab") ?? state.tab;
@@ -85,7 +94,7 @@ function parse(hash, kept = DEFAULTS) {
     }
   }
   const used = TABS[state.tab](state), isDropped = name => name in DEFAULTS && !used.includes(name)
-    && (given.has(name) || (ASKED.includes(name) && state[name] !== DEFAULTS[name]));
+    && (given.has(name) || (state.tab !== "question" && ASKED.includes(name) && state[name] !== DEFAULTS[name]));
   for (const name of Object.keys(DEFAULTS).filter(isDropped)) refused.push(`${name} = ${state[name]} (not used here)`);
   return {state, refused};
 }
@@ -146,6 +155,7 @@ function caseOf(state) {
 // Why a state has no answer: no damping gives r, Λ or ϖ is out of range, or a ball rises.
 function impossible(state) {
   const {tab, a, r, w, phi, v, dv, dphi, release} = state;
+  if (tab === "question") return "";
   if (!(tab === "stage" && state.model === "restitution") && Number.isNaN(dampingOf(r, release)))
     return `r = ${r} is not above e⁻² = ${shown(Math.exp(-2), 3)}: a contact that ends where its force is zero `
       + "then needs a damping ratio of 1 or more, which this page has not. Choose the end at δ = 0.";
@@ -173,6 +183,7 @@ function impossible(state) {
 
 // What each tab uses, in the order of its address, and what an orbit is asked for.
 const TABS = {
+  question: () => ["tab", "stiff"],
   orbit: () => ["tab", "r", "w", "a", "n", "release", "side", "t"],
   design: state => ["tab", "m", "f", ...givenOf(state), "r", "n", "release", "t"],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "release",

@@ -15,7 +15,7 @@ import xarray as xr
 
 FOLDER = Path(__file__).parents[1] / "explorer"
 
-SCRIPTS = "model simulation starts plot state orbit stage page".split()
+SCRIPTS = "model simulation starts plot state orbit stage question page".split()
 """The scripts in the order in which the page has them."""
 
 FILES = sorted(FOLDER.iterdir())
@@ -35,6 +35,15 @@ QUANTITIES = {
     "permanent_contact": "threshold of permanent contact",
 }
 """The quantities that the page compares, in words."""
+
+
+WAYS = {
+    "README": "../../../README.md",
+    "Article": "../article.md",
+    "Course": "../docs/first-hour.md",
+    "Code": "../README.md",
+}
+"""Where the page leads, from its folder in the repository."""
 
 
 def references(data: xr.Dataset) -> str:
@@ -73,5 +82,6 @@ def page(data: xr.Dataset) -> str:
         references=references(data),
         quantities=QUANTITIES,
         scenes=json.loads(texts["scenes.json"]),
+        ways=WAYS,
         bound=repr(BOUND),
     )

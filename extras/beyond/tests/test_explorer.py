@@ -223,6 +223,13 @@ def test_the_page_begins_with_a_guess(made, tmp_path):
     assert given[8].startswith("#tab=orbit&r=0.65&w=30&a=1&n=1&release=displacement")
 
 
+def test_the_reason_is_that_of_the_readme(made):
+    """In the same words, which there have links."""
+    readme = (BEYOND.parents[1] / "README.md").read_text(encoding="utf-8").replace("\n", " ")
+    why = re.search(r'id="why">.*?<p>(.*?)\.</p>', made)[1]
+    assert why in readme
+
+
 def test_the_question_leaves_the_case_as_it_is(made, tmp_path):
     there = pressed("#tab-question"), pressed("#tab-design"), "view.explorer.hash()"
     opened = asked(made, tmp_path, "view.explorer.show('#tab=design')", "view.explorer.hash()")[1]

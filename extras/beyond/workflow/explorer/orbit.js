@@ -129,7 +129,7 @@ function row(name, cells) {
 
 const ORBIT_ROWS = {
   phase: "phase of impact φ", contact_duration: "duration of contact τ_b",
-  impact_velocity: "velocity before, z′_i", bounce_velocity: "bouncing-off velocity z′_b",
+  impact_velocity: "velocity as the contact starts z′_i", bounce_velocity: "bouncing-off velocity z′_b",
   apparent_restitution: "apparent restitution r_a", max_height: "maximum height max z",
 };
 // The same quantities in the units of the physical tab.
@@ -215,7 +215,7 @@ function positionOf({models: [, simple], states}, {n, amplitude}, others) {
   const says = `Position of Λ = ${shown(amplitude, 4)}: ${shown((amplitude - low) / (high - low), 3)}, where 0 is the `
     + `saddle-node of the restitution model, Λ = ${shown(low, 4)}, and 1 its period doubling, Λ = ${shown(high, 4)}.`;
   if (others.includes(n)) return `${says} The n with a stable orbit at this Λ:`;
-  return `${says} Here a ball stays on no ${n}-T orbit of this model (${states[1]}; the contact: ${states[0]}). `
+  return `${says} Here this model has no ${n}-T orbit on which a ball stays (${states[1]}; the contact: ${states[0]}). `
     + (others.length ? "Ask for an n with a stable orbit at this Λ:" : "At this Λ it has no stable orbit with n up to "
       + `${RANGES.n[1]}: the tab Stage follows balls.`);
 }

@@ -32,7 +32,7 @@ function say([good, text]) {
   const [headline, ...rest] = text.split(/(?=: )/), strong = document.createElement("strong");
   strong.textContent = headline;
   $("verdict").dataset.good = good;
-  $("verdict").replaceChildren(strong, rest.join(""));
+  $("verdict").replaceChildren(...text ? [strong, rest.join("")] : []);
 }
 
 // The scene that is on the stage, or was the last one, is marked, and leads to the next.
@@ -65,7 +65,7 @@ function show(hash, kept = DEFAULTS) {
   const onStage = state.tab === "stage", asks = state.tab === "question";
   document.body.dataset.tab = state.tab;
   for (const part of document.querySelectorAll("[data-tabs]")) part.hidden = !part.dataset.tabs.split(" ").includes(state.tab);
-  for (const id of ["play", "verdict"]) $(id).hidden = false;
+  $("play").hidden = false;
   $("h-motion").textContent = asks ? "Which ball flies higher?" : "One cycle";
   $("call-name").textContent = "The same with bouncing_ball_beyond in Python:";
   if (why) return refuse(why);

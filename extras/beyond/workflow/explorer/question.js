@@ -27,9 +27,8 @@ function answered({stiff}) {
 }
 
 function showQuestion(state) {
-  const {higher, where} = guesses, text = answered(state);
-  say(["none", text]);
-  $("verdict").hidden = !text;
+  const {higher, where} = guesses;
+  say(["none", answered(state)]);
   $("play").hidden = !higher;
   $("why").hidden = !higher;
   $("why").open ||= Boolean(higher);

@@ -192,10 +192,22 @@ def test_the_explorer_refuses_where_python_refuses(tmp_path):
             assert shows == pytest.approx(computed, rel=EXACT, abs=EXACT)
         state, _, why = values["spring-damper state"].partition(": ")
         assert state in kinds, answer["call"]
-        assert bool(why) == (state == "no ball follows it")
+        assert why == getattr(found, "obstacle", "")
         assert answer["verdict"].startswith("No verdict: no ball stays on the ")
         seen.add(state)
     assert {"below the saddle-node", "unstable", "no ball follows it"} <= seen
+
+
+def test_an_orbit_below_the_table_is_not_called_stable(tmp_path):
+    """Both multipliers are in the unit circle, in all three models."""
+    address = "#tab=orbit&r=0.01&w=1000&a=3.0805&release=displacement"
+    text = page(read(Path(__file__).resolve().parents[1] / "figures/explorer.nc"))
+    (answer,) = shown({"low": Frame(text, cases=(address,))}, tmp_path)["low"]["cases"]
+    found = called(answer["call"])
+    assert found.obstacle == "a flight passes below the table"
+    assert answer["values"]["spring-damper state"] == f"no ball follows it: {found.obstacle}"
+    assert answer["verdict"].startswith("No verdict: no ball stays on the 1-T orbit")
+    assert np.isnan(float(answer["values"]["errors max_height"]))
 
 
 def test_the_physical_tab_says_what_on_shaker_says(seen):

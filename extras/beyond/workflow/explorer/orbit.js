@@ -128,7 +128,7 @@ function row(name, cells) {
 }
 
 const ORBIT_ROWS = {
-  phase: "phase of impact φ", contact_duration: "duration of contact τ_b",
+  phase: "phase of the impact φ", contact_duration: "duration of contact τ_b",
   impact_velocity: "velocity as the contact starts z′_i", bounce_velocity: "bouncing-off velocity z′_b",
   apparent_restitution: "apparent restitution r_a", max_height: "maximum height max z",
 };

@@ -53,7 +53,7 @@ function physicalAxis(name, scale, unit, largest) {
 const heightAxis = (name, symbol, scales, largest) =>
   scales ? physicalAxis(name, scales.length, "m", largest) : {name: `${name} ${symbol}`, factor: 1};
 const phaseAxis = scales =>
-  scales ? {name: "phase of impact [°]", factor: 180 / Math.PI} : {name: "phase of impact φ/π", factor: 1 / Math.PI};
+  scales ? {name: "phase of the impact [°]", factor: 180 / Math.PI} : {name: "phase of the impact φ/π", factor: 1 / Math.PI};
 const amplitudeName = scales => scales ? "acceleration of the table Λ [g]" : "amplitude of the table Λ";
 
 // ---- Lines and marks.

@@ -28,7 +28,7 @@ largest that was seen."""
 QUANTITIES = {
     "max_height": "maximum height",
     "bounce_velocity": "bouncing-off velocity",
-    "phase": "phase of impact, share of a period",
+    "phase": "phase of the impact, share of a period",
     "apparent_restitution": "apparent restitution",
     "saddle_node": "saddle-node",
     "period_doubling": "period doubling",

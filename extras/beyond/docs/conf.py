@@ -65,6 +65,7 @@ PARTS = {
         "extras/beyond/article",
         "extras/beyond/appendix",
         "extras/beyond/phase",
+        "extras/beyond/laid",
         "extras/beyond/figures/*",
         "extras/beyond/docs/first-hour",
         "extras/beyond/docs/answers",

@@ -58,7 +58,7 @@ def used(complete, tmp_path) -> Checkout:
 
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
     reference = {f"figures/{path.name}" for path in (BEYOND / "figures").iterdir()}
-    texts = {"article.md", "appendix.md", "phase.md"}
+    texts = {"article.md", "appendix.md", "phase.md", "laid.md"}
     assert complete.made() | {"figures/accepted.json"} == reference | texts
 
 

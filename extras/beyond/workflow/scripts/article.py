@@ -13,7 +13,7 @@ with reading(snakemake.input) as sources:
     from studies.article import filled_in
 
     datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
-    for name in ("article", "appendix", "phase", "figures"):
+    for name in ("article", "appendix", "phase", "laid", "figures"):
         text = filled_in(name, datasets)
         Path(snakemake.output[name]).write_text(text, encoding="utf-8", newline="\n")
     save_record(snakemake, sources, PROJECT)

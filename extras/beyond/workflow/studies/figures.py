@@ -3,9 +3,11 @@
 from collections.abc import Callable, Mapping
 from itertools import cycle
 
+import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -551,6 +553,97 @@ def ext_phase(data: xr.Dataset) -> Figure:
     return figure
 
 
+# Laid balls
+
+CONTACTS: Mapping[str, int] = {
+    "1 contact": 1,
+    "2": 2,
+    "3": 3,
+    "4": 4,
+    "5 to 7": 5,
+    "8 to 11": 8,
+    "12 to 17": 12,
+    "18 or more": 18,
+}
+"""Colours of motions that repeat in each period, by the smallest number of contacts."""
+
+SHADES = matplotlib.colormaps["viridis"](np.linspace(0.98, 0.1, len(CONTACTS)))
+RESTS, ENDLESS, SEVERAL, FLYING, UNKNOWN = "0.9", "black", COLOURS[2], "#d95f9b", "white"
+AREAS = (UNKNOWN, RESTS, *SHADES, SEVERAL, FLYING, ENDLESS)
+"""Colours of a map by the number of their kind of motion."""
+
+
+def kinds_of_motion(impacts: xr.DataArray, periods: xr.DataArray) -> xr.DataArray:
+    """Numbers of the colours in `AREAS`, without those of the flying orbit and of rigid balls."""
+    count = sum((impacts >= least).astype(int) for least in CONTACTS.values())
+    return xr.where(periods == 1, 1 + count, xr.where(periods > 1, 2 + len(CONTACTS), 0))
+
+
+def ext_laid(data: xr.Dataset) -> Figure:
+    """Contacts in a period of laid balls over ϖ and Λ, for two r, and the heights of their hops."""
+    figure, (*maps, heights) = panels(3.5, width=WHOLE_WIDTH, columns=3)
+    for axes, r in zip(maps, data.restitution, strict=True):
+        draw_laid(axes, data.sel(restitution=r))
+        axes.set_title(label(restitution=r))
+        axes.tick_params(labelleft=axes is maps[0])
+    maps[0].set_ylabel(r"amplitude $\Lambda$")
+    draw_hops(heights, data.isel(restitution=0))
+    entries = {
+        "stays on the table": Patch(facecolor=RESTS),
+        **{name: Patch(facecolor=shade) for name, shade in zip(CONTACTS, SHADES, strict=True)},
+        "chatters and sticks (rigid)": Patch(facecolor=ENDLESS),
+        "flying 1-T orbit": Patch(facecolor=FLYING),
+        "several periods": Patch(facecolor=SEVERAL),
+        "unknown": Patch(facecolor=UNKNOWN, edgecolor="0.5", linewidth=0.6),
+        r"$\Lambda_{SD}$": sample(linewidth=1.4),
+    }
+    legend_below(figure, entries, columns=7)
+    return figure
+
+
+def draw_laid(axes: Axes, one: xr.Dataset) -> None:
+    """A map of the kinds of motion on contacts, with a strip of those in the restitution model."""
+    number = len(AREAS)
+    look: Look = {
+        "cmap": ListedColormap(AREAS),
+        "vmin": -0.5,
+        "vmax": number - 0.5,
+        "rasterized": True,
+    }
+    look["shading"] = "nearest"
+    kinds = kinds_of_motion(one.impacts, one.periods)
+    flies = np.isclose(one.hop, one.flying_hop, rtol=1e-3) & (one.periods == 1)
+    kinds = kinds.where(~flies, number - 2).transpose("amplitude", ...)
+    axes.pcolormesh(one.frequency_ratio, one.amplitude, kinds, **look)
+    axes.plot(one.frequency_ratio, one.threshold_amplitude, color="black", linewidth=1.4)
+    along_ratio(axes, one.frequency_ratio)
+    strip = axes.inset_axes((1.03, 0, 0.07, 1), sharey=axes)
+    kinds = kinds_of_motion(0 * one.rigid_periods, one.rigid_periods)
+    kinds = kinds.where(~((one.rigid_periods == 1) & (one.rigid_hop > 0)), number - 1)
+    strip.pcolormesh([0, 1], one.amplitude, np.stack([kinds, kinds], axis=1), **look)
+    strip.set_title("rigid", fontsize=7)
+    strip.set_xticks([])
+    strip.tick_params(left=False, labelleft=False)
+    strip.spines[:].set_visible(False)
+    axes.set_ylim(one.amplitude.values[[0, -1]])
+
+
+def draw_hops(axes: Axes, one: xr.Dataset) -> None:
+    """Heights of the hops along Λ, and those of the flying orbit on the stiffest contact."""
+    wide: Look = {"color": "0.75", "linewidth": 4, "solid_capstyle": "butt"}
+    axes.plot(one.amplitude, one.rigid_hop.where(one.rigid_periods == 1), label="rigid", **wide)
+    for ratio, colour, dashes in zip(one.shown_ratio, COLOURS[1:], DASHES, strict=False):
+        hop = one.shown_hop.sel(shown_ratio=ratio)
+        look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.1}
+        axes.plot(one.amplitude, hop, label=label(frequency_ratio=ratio), **look)
+    flying = one.flying_hop.isel(frequency_ratio=-1)
+    axes.plot(one.amplitude, flying, color=FLYING, linewidth=1.6, label="flying 1-T orbit")
+    axes.set(yscale="log", ylim=(1e-4, 20), xlabel=r"amplitude $\Lambda$")
+    axes.set_ylabel(r"height of the hop, $\max\,\delta$")
+    axes.set_title(label(restitution=one.restitution))
+    axes.legend(fontsize=7, loc="lower right")
+
+
 FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "ext_answers": ext_answers,
     "ext_impact": ext_impact,
@@ -560,6 +653,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "ext_map": ext_map,
     "ext_laws": ext_laws,
     "ext_phase": ext_phase,
+    "ext_laid": ext_laid,
 }
 
 

@@ -65,6 +65,37 @@ VARIABLES = SYMBOLS | {
     "example_restitution_doubling": Variable("the same in the restitution model", "Λ_PD"),
     # Orbits that are reached. Where a ball starts beside the boundary of a basin, rounding decides.
     "basin_share": Variable("share of starts that end on the orbit", tolerance=0.1, floor=1.0),
+    # Laid balls. The end of a motion is extrapolated from its last impacts.
+    "hop": Variable(
+        "maximum height above the table; missing if the motion is not known",
+        "max δ",
+        tolerance=1e-6,
+    ),
+    "start_decides": Variable(
+        "whether a ball that touches the table at its phase 0, with its velocity, ends on another "
+        "known motion"
+    ),
+    "flying_hop": Variable(
+        "maximum height above the table on the stable 1-T orbit that joins that of the restitution "
+        "model; missing if there is none",
+        "max δ",
+    ),
+    "shown_ratio": Variable("frequency ratio of a line", "ϖ"),
+    "shown_hop": Variable(
+        "maximum height above the table; missing if the motion is not known",
+        "max δ",
+        tolerance=1e-6,
+    ),
+    "rigid_periods": Variable(
+        "periods of the table after which the motion repeats in the restitution model, 0 if it is "
+        "not known"
+    ),
+    "rigid_hop": Variable(
+        "maximum height above the table in the restitution model; missing if the motion is not "
+        "known",
+        "max δ",
+        tolerance=1e-6,
+    ),
     # One contact
     "free_force": Variable("force of a free contact, over mω times the impact speed", "F/(mωv)"),
     "contact_end": Variable("duration of a free contact, in units of 1/ω", "ωD"),

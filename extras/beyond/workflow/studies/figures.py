@@ -630,6 +630,8 @@ def draw_laid(axes: Axes, one: xr.Dataset) -> None:
 
 def draw_hops(axes: Axes, one: xr.Dataset) -> None:
     """Heights of the hops along Λ, and those of the flying orbit on the stiffest contact."""
+    # Before the lines: balls that stay on the table have no height above zero to scale.
+    axes.set(yscale="log", ylim=(1e-4, 20))
     wide: Look = {"color": "0.75", "linewidth": 4, "solid_capstyle": "butt"}
     axes.plot(one.amplitude, one.rigid_hop.where(one.rigid_periods == 1), label="rigid", **wide)
     for ratio, colour, dashes in zip(one.shown_ratio, COLOURS[1:], DASHES, strict=False):
@@ -638,10 +640,10 @@ def draw_hops(axes: Axes, one: xr.Dataset) -> None:
         axes.plot(one.amplitude, hop, label=label(frequency_ratio=ratio), **look)
     flying = one.flying_hop.isel(frequency_ratio=-1)
     axes.plot(one.amplitude, flying, color=FLYING, linewidth=1.6, label="flying 1-T orbit")
-    axes.set(yscale="log", ylim=(1e-4, 20), xlabel=r"amplitude $\Lambda$")
+    axes.set_xlabel(r"amplitude $\Lambda$")
     axes.set_ylabel(r"height of the hop, $\max\,\delta$")
     axes.set_title(label(restitution=one.restitution))
-    axes.legend(fontsize=7, loc="lower right")
+    axes.legend(fontsize=7)
 
 
 FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {

@@ -76,8 +76,8 @@ VARIABLES = SYMBOLS | {
         "known motion"
     ),
     "flying_hop": Variable(
-        "maximum height above the table on the stable 1-T orbit that joins that of the restitution "
-        "model; missing if there is none",
+        "maximum height above the table on the stable 1-T orbit that flies for most of the period; "
+        "missing if there is none",
         "max δ",
     ),
     "shown_ratio": Variable("frequency ratio of a line", "ϖ"),

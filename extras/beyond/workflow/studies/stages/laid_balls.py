@@ -109,7 +109,7 @@ def motions(balls: Balls, contacts: int) -> dict[str, NDArray]:
 
 def in_groups(balls: Balls, contacts: int) -> dict[str, NDArray]:
     """The motions of many balls, in groups that are small enough for compiled loops."""
-    groups = np.array_split(np.arange(balls.phase.size), -(-balls.phase.size // (FEW_BALLS - 1)))
+    groups = np.array_split(np.arange(balls.phase.size), 1 + balls.phase.size // FEW_BALLS)
     found = [motions(balls.take(group), contacts) for group in groups]
     return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
@@ -134,18 +134,15 @@ def on_contacts(r: float, amplitude: NDArray, ratio: NDArray, contacts: int) -> 
 
 
 def flying(r: float, amplitude: NDArray, ratio: NDArray) -> NDArray:
-    """Hop on the stable 1-T orbit with a long flight, NaN where there is none."""
+    """Hop on the stable 1-T orbit that flies for most of the period, NaN where there is none."""
     every, ratios = (each.ravel() for each in np.meshgrid(amplitude, ratio, indexing="ij"))
-    found = orbit(SpringDamper(ratios, restitution=r), amplitude=every)
-    stable = [
-        i
-        for i, each in enumerate(found)
-        if isinstance(each, PeriodicOrbit) and each.stable and each.admissible
-    ]
-    start = [[found[i].phase, found[i].speeds[0]] for i in stable]
-    phase, speed = np.reshape(start, (-1, 2)).T
-    ball = SpringDamper(ratios[stable], restitution=r)
-    balls = Balls(ball, every[stable], 0 * phase, phase, speed)
+    ball = SpringDamper(ratios, restitution=r)
+    found = orbit(ball, amplitude=every)
+    orbits = {i: each for i, each in enumerate(found) if isinstance(each, PeriodicOrbit)}
+    orbits = {i: each for i, each in orbits.items() if each.contact_duration < np.pi}
+    stable = [i for i, each in orbits.items() if each.stable and each.admissible]
+    phase, speed = np.reshape([[orbits[i].phase, orbits[i].speeds[0]] for i in stable], (-1, 2)).T
+    balls = Balls(ball.rows(stable), every[stable], 0 * phase, phase, speed)
     hop = np.full(every.size, np.nan)
     hop[stable] = hops(balls, np.ones(len(stable), int))
     return hop.reshape(amplitude.size, ratio.size)

@@ -32,6 +32,7 @@ import pytest
             "error_thresholds: {fig99: {title: A new one, release: force}}",
             "error_thresholds.fig99.release: a setting of the whole run, not of an entry",
         ),
+        ("restitution: 0.7", "restitution: unknown key, did you mean "),
         (
             "continuation: {fig08: {points: 61}}\ncontinuation: {fig09: {points: 61}}",
             "mine.yaml, line 2: continuation stands twice: write its keys together",

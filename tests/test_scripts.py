@@ -382,14 +382,14 @@ def test_figure_14_has_the_heights_of_the_closed_form_and_the_threshold_of_their
         assert float(point.relative_error) == pytest.approx(error, abs=ORBITS * ratio)
     found = float(data.error_threshold)
     zeta = independent.restitution_to_damping(r)
-    assert error_of_the_height(found, zeta) == pytest.approx(0.01, abs=1e-9)
+    assert error_of_the_height(found, r, zeta) == pytest.approx(given["tolerance"], abs=1e-9)
     assert data.threshold_status == "found"
 
 
-def error_of_the_height(ratio, zeta):
-    """The error of the height for n = 1, r = 0.65 and Λ = 1, from an orbit of the closed form."""
+def error_of_the_height(ratio, r, zeta):
+    """The error of the height for n = 1 and Λ = 1, from an orbit of the closed form."""
     half = np.pi / ratio / np.sqrt(1 - zeta**2)
-    x = np.pi * 0.35 / 1.65
+    x = np.pi * (1 - r) / (1 + r)
     highest = np.sqrt(1 - x**2) + np.pi**2 / 2
 
     def excess(duration):
@@ -553,10 +553,11 @@ def test_the_numbers_of_a_hypothesis_are_those_of_its_contact(hypotheses):
         assert np.isnan(row) or name.startswith(f"Table 1: {row:g},")
     assert int(hypotheses.row.notnull().sum()) == len(claims.table1_ends())
 
-    zeta = -np.log(0.65) / np.pi
+    r = NUMBERS.R_OF_THRESHOLDS
+    zeta = -np.log(r) / np.pi
     first = hypotheses.found.sel(hypothesis="damping to first order")
     threshold = float(first.sel(number="height threshold"))
-    assert error_of_the_height(threshold, zeta) == pytest.approx(0.01, abs=1e-9)
+    assert error_of_the_height(threshold, r, zeta) == pytest.approx(0.01, abs=1e-9)
 
 
 def test_hypotheses_are_in_the_order_of_the_numbers_that_they_reproduce(hypotheses):
@@ -589,7 +590,8 @@ def test_the_counts_of_the_hypotheses_follow_from_their_distances(hypotheses):
 
 def test_the_damping_of_82_has_thresholds_that_round_to_it(hypotheses):
     for zeta, ratio in zip(hypotheses.damping_of_82.values, (81.5, 82.5), strict=True):
-        assert error_of_the_height(ratio, zeta) == pytest.approx(0.01, abs=1e-9)
+        height = error_of_the_height(ratio, NUMBERS.R_OF_THRESHOLDS, zeta)
+        assert height == pytest.approx(0.01, abs=1e-9)
 
 
 # The names of quantities

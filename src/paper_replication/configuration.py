@@ -56,7 +56,7 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
         yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
         return
     yield from impossible_numbers(config)
-    misplaced = settings_in_entries(config)
+    misplaced = settings_in_entries(config, schema)
     yield from (f"{path}: a setting of the whole run, not of an entry" for path in misplaced)
     for error in Draft202012Validator(schema).iter_errors(config):
         if error.validator in ("additionalProperties", "unevaluatedProperties"):
@@ -69,9 +69,9 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             yield ": ".join(filter(None, (where, f"{error.message}{reason(error)}")))
 
 
-def settings_in_entries(config: Mapping) -> list[str]:
+def settings_in_entries(config: Mapping, schema: Mapping) -> list[str]:
     """Return the paths of settings of the whole run that stand in an entry."""
-    settings = config.keys() - stages(config)
+    settings = schema.get("properties", {}).keys() & config.keys() - stages(config)
     return [
         dotted((stage, name, key))
         for stage, section in stages(config).items()

@@ -5,18 +5,19 @@
 const OPENING = {r: 0.65, a: 1, n: 1, release: "displacement", side: "stable"};
 const questionAt = stiff => ({n: OPENING.n, side: OPENING.side, amplitude: OPENING.a, tolerance: DEFAULTS.t / 100,
   contact: contactOf(OPENING.r, stiff, OPENING.release)});
-const softnessOf = stiff => answer(questionAt(stiff)).errors.max_height;
+// The relative error of the maximum height (Eq. 37).
+const errorOf = stiff => answer(questionAt(stiff)).errors.max_height;
 
 // What was guessed, and for which stiffness: the ball that flies higher, and where this begins to matter.
 const guesses = {higher: null, where: null};
 // The stiffness at which the heights differ by the tolerance.
-const thresholdOf = () => 10 ** rootOf(power => softnessOf(10 ** power) + questionAt(1).tolerance,
+const thresholdOf = () => 10 ** rootOf(power => errorOf(10 ** power) + questionAt(1).tolerance,
   ...RANGES.stiff.map(Math.log10));
 const shareOf = stiff => `1/${shown(TURN / answer(questionAt(stiff)).orbits[0].contact_duration, 3)} of the table's period`;
 
 function answered({stiff}) {
   const {higher, where} = guesses, {tolerance} = questionAt(stiff);
-  const onContact = at => `${percent(softnessOf(at), tolerance)} ${softnessOf(at) < 0 ? "lower" : "higher"}`;
+  const onContact = at => `${percent(errorOf(at), tolerance)} ${errorOf(at) < 0 ? "lower" : "higher"}`;
   if (!higher) return "";
   if (!where) return `${higher.guess === "rigid" ? "Yes" : "No"}: at ϖ = ${shown(higher.at, 4)} the ball on the spring `
     + `flies ${onContact(higher.at)}, because its contact acts like an impact below the surface of the table.`;
@@ -31,7 +32,6 @@ function showQuestion(state) {
   say(["none", answered(state)]);
   $("play").hidden = !higher;
   $("why").hidden = !higher;
-  $("why").open ||= Boolean(higher);
   $("where").hidden = !higher;
   $("onward").hidden = !where;
   $("touches").textContent = "ϖ is the natural frequency of the ball on its spring over that of the table: "
@@ -81,6 +81,7 @@ function drawBalls({stiff}) {
 
 document.querySelectorAll("[data-guess]").forEach(button => button.addEventListener("click", () => {
   guesses.higher = {guess: button.dataset.guess, at: current.stiff};
+  $("why").open = true;
   showQuestion(current);
   if (started === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) $("play").click();
 }));

@@ -25,6 +25,7 @@ with from_source(TOP / "src"):
     from paper_replication.configuration import (
         captions,
         checked,
+        code_of_packages,
         datasets,
         entries,
         named,
@@ -44,6 +45,9 @@ os.environ.update(PYTHONPATH=os.pathsep.join(FOLDERS))
 
 if not os.access(".", os.W_OK):
     sys.exit("This folder cannot be written: give a folder for the results, --directory FOLDER")
+
+if code := [*code_of_packages(TOP / "src")]:
+    sys.exit("\n".join(code))
 
 # A mistake in the configuration ends the run before any job.
 stop(unreadable(TOP / "config/config.yaml"))
@@ -409,6 +413,8 @@ def asked(wildcards):
     settings = workflow.dag_settings
     if settings.until or settings.omit_from:
         sys.exit("--until and --omit-from leave out the comparison: name the figures instead")
+    if "accept" in settings.targets:
+        sys.exit("diff and accept: one after the other, because accept changes what diff reads")
     return named(config, settings.targets)
 
 

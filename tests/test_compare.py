@@ -11,7 +11,7 @@ import sys
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from itertools import chain, count, product, takewhile
+from itertools import chain, product
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -392,6 +392,7 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     first = compare.run_in(shutil.copytree(project.top / "results", tmp_path / "first"), "first")
     other = provenance.versions() | {"matplotlib": "9.9"}
     monkeypatch.setattr(provenance, "versions", lambda: other)
+    monkeypatch.setattr(compare, "versions", lambda: other)
     drawn = replace(project, make=partial(make, form="height {:.3g}"))
     run(drawn)
     agree = "6 of 8 files agree with the reference."
@@ -542,7 +543,6 @@ def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind)
     ]
     text = page.read_text("utf-8")
     assert "changed parameter: n 1 → 2" in text and text.count("data:image/png") == 2
-    assert compare.main(project, [str(one), str(one)]) == 0
     # One run elsewhere has parameters of its own, and must be what today's code makes.
     if kind == "folder":
         for file in FILES:
@@ -557,10 +557,11 @@ def test_a_damaged_record_is_named_and_that_of_the_reference_is_mended(project, 
     record = results / "records/fig14.json"
     before = record.read_text("utf-8")
     record.write_text(left, "utf-8")
-    assert "fig14.png in the results, records/fig14.json cannot be read" in lines(project)[0]
+    why = "has the marks of a conflict" if left.startswith("<") else "cannot be read"
+    assert f"fig14.png in the results, records/fig14.json {why}" in lines(project)[0]
     record.write_text(before, "utf-8")
     (project.top / compare.ACCEPTED).write_text(left, "utf-8")
-    assert "in the reference, figures/accepted.json cannot be" in lines(project)[0]
+    assert f"in the reference, figures/accepted.json {why}" in lines(project)[0]
     accept(project)
     assert lines(project) == []
 
@@ -678,10 +679,17 @@ def test_another_python_alone_changes_no_record(project, monkeypatch):
     assert "3.99.0" in (project.top / compare.ACCEPTED).read_text("utf-8")
 
 
-def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_path):
-    """Each attempt is killed within its second write, until one has nothing more to write."""
-    run(project, (1.0, 2.5), text="83")
+@pytest.mark.parametrize("another", [False, True])
+def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_path, another):
+    """Each attempt is killed within its third write, until one has nothing more to write. The first
+    write is its plan. Attempts may have different results.
+    """
+
+    def computed(project, attempt):
+        run(project, (1.0, 2.5 + attempt * another), text=f"{83 + attempt * another}")
+
     whole = project_in(shutil.copytree(project.top, tmp_path / "whole"))
+    computed(whole, 7)
     accept(whole)
 
     def killed(attempt):
@@ -689,7 +697,7 @@ def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_pat
 
         def move(*paths):
             writes.append(paths)
-            if len(writes) == 2:
+            if len(writes) == 3:
                 patch.setattr(compare.Path, "unlink", lambda *_, **__: None)
                 raise KeyboardInterrupt
             shutil.move(*paths)
@@ -698,11 +706,134 @@ def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_pat
             patch.setattr(datasets.os, "replace", move)
             patch.setattr(datasets.os, "getpid", lambda: attempt)
             accept(project)
-        return len(writes) == 2
+        return len(writes) == 3
 
-    assert sum(1 for _ in takewhile(killed, count())) == 5
-    assert len([*project.top.rglob(".*.part.*")]) == 5
+    for attempt in range(8):
+        computed(project, attempt)
+        killed(attempt)
+    while killed(8):
+        pass
+    assert [*project.top.glob(compare.BEGUN)] == []
     assert reference(project) == reference(whole)
+
+
+@pytest.mark.parametrize(
+    "change, told",
+    [
+        (lambda top: edited_by_hand(top), "edited by hand: paper.md: .*`git stash -- paper.md`"),
+        (lambda top: (top / "figures/fig18.png").write_bytes(b"x"), "move it: figures/fig18.png"),
+        # Git has what was committed.
+        (lambda top: (edited_by_hand(top), commit(top)), ""),
+    ],
+)
+def test_an_acceptance_never_overwrites_a_file_of_the_user(project, change, told):
+    run(project, text="83")
+    pictures = ("figures/fig18.png", "figures/fig18.svg")
+    project.make("fig18", None, project.top / "results/figures")
+    note(project, "fig18", pictures, "src/drawing.py")
+    change(project.top)
+    before = reference(project)
+    if told:
+        with pytest.raises(ValueError, match=told):
+            accept(project, (*MADE, *pictures))
+        assert reference(project) == before
+    else:
+        assert "paper.md" in accept(project, (*MADE, *pictures))
+
+
+def test_a_file_that_no_rule_makes_any_more_stays_if_it_was_edited(project):
+    edit(project, "figures/fig01.svg")
+    for path in project.top.glob("results/*/fig01.*"):
+        path.unlink()
+    with pytest.raises(ValueError, match=r"edited by hand: figures/fig01.svg: "):
+        accept(project, [file for file in MADE if "fig01" not in file])
+
+
+def edited_by_hand(top):
+    with (top / "paper.md").open("a", encoding="utf-8") as file:
+        file.write("a sentence of the user\n")
+
+
+def compared(project, capsys):
+    """The status of the rule `diff`, and what it prints."""
+    results = project.top / "results"
+    job = SimpleNamespace(
+        input=[results / file for file in MADE], params=SimpleNamespace(config=CONFIG, names=[])
+    )
+    status = compare.report_of_run(project, results, job)
+    return status, "".join(capsys.readouterr())
+
+
+def test_results_of_other_versions_are_one_line_on_each_road(project, capsys, monkeypatch):
+    numpy = f"numpy {np.__version__}, here is 9.9"
+    other = provenance.versions() | {"numpy": "9.9", "python": "3.99"}
+    monkeypatch.setattr(compare, "versions", lambda: other)
+    line = f"the results, made with {numpy}: remove them and run again\n"
+    assert compared(project, capsys) == (2, line)
+    with pytest.raises(SystemExit):
+        compare.main(project, [str(project.top)])
+    assert f"made with {numpy}" in capsys.readouterr().err
+    with pytest.raises(ValueError, match=f"made with {numpy}"):
+        accept(project)
+
+
+def test_a_merge_of_two_acceptances_is_named_and_its_way_out_is_walked(project, capsys):
+    """The line names the command; both branches changed the code, the numbers and the texts."""
+    for branch, height in (("one", 2.5), ("other", 3.0)):
+        git(project.top, "checkout", "-q", "-b", branch, "main")
+        (project.top / f"src/{branch}.py").touch()
+        commit(project.top)
+        run(project, (1.0, height), text=f"{80 + height}")
+        accept(project)
+        commit(project.top)
+    with pytest.raises(subprocess.CalledProcessError):
+        git(project.top, "merge", "-q", "one")
+    status, line = compared(project, capsys)
+    assert status == 2 and line.startswith("figures/accepted.json has the marks of a conflict: ")
+    way = line.split("`")[1].split()
+    git(project.top, *way[1:])
+    commit(project.top)
+    run(project, (1.0, 3.5), text="84")
+    assert "paper.md" in accept(project)
+    assert compared(project, capsys)[0] == 0
+
+
+@pytest.mark.parametrize("kind", ["folder", "link", "zip", "copy"])
+def test_a_run_is_not_compared_with_itself(project, tmp_path, capsys, kind):
+    results = project.top / "results"
+    other = tmp_path / "another"
+    if kind == "folder":
+        other = project.top
+    elif kind == "link":
+        other.symlink_to(results)
+    elif kind == "zip":
+        other = shutil.make_archive(str(other), "zip", results)
+    else:
+        shutil.copytree(results, other)
+    with pytest.raises(SystemExit) as ended:
+        compare.main(project, [str(results), str(other)])
+    assert ended.value.code == 2 and "are the same run" in capsys.readouterr().err
+    run(project)
+    assert (
+        kind == "folder" or kind == "link" or compare.main(project, [str(results), str(other)]) == 0
+    )
+
+
+def test_a_dataset_that_was_copied_over_a_result_is_named_itself(project, tmp_path):
+    """Also if pictures and texts were made again from the copy."""
+    run(project, (1.0, 2.0 + 1e-10))
+    shutil.copy(project.top / "figures/fig14.nc", project.top / "results/figures/fig14.nc")
+    line = "fig14: edited by hand: figures/fig14.nc of the results"
+    assert lines(project) == [line]
+    note(project, "claims", ["figures/claims.nc"], "src/model.py", ["fig14"])
+    assert lines(project) == [line]
+
+
+@pytest.mark.parametrize("name", ["references", "source", "license"])
+def test_results_with_other_attributes_are_stale(project, name):
+    today = replace(project, **{name: "another"})
+    stale = f"stale, remove it and run again; changed since: {name}  → another"
+    assert lines(today) == [f"fig14: {stale}", f"claims: {stale}"]
 
 
 def untracked(project):
@@ -742,7 +873,7 @@ def with_a_slip(project):
         (with_a_slip, "correct first: high is not asked, its function high raises NameError"),
         (untracked, r"commit first: \?\? src/new.py"),
         (ignored, "git does not know src/new.py"),
-        (mixed, "run from nothing first: .*9.9"),
+        (mixed, r"made with numpy 9\.9, here is .*: remove them and run again"),
     ],
 )
 def test_nothing_is_accepted_that_cannot_be_made_again(project, change, line):

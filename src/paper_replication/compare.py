@@ -41,7 +41,14 @@ import yaml
 from PIL import Image
 
 from paper_replication.configuration import SHOWN_BY, entries
-from paper_replication.datasets import Project, attributes, plain, read, write
+from paper_replication.datasets import (
+    Project,
+    attributes,
+    common_attributes,
+    plain,
+    read,
+    write,
+)
 from paper_replication.judgements import raised
 from paper_replication.provenance import (
     PACKAGES,
@@ -52,20 +59,24 @@ from paper_replication.provenance import (
     relative,
     tree,
     uncommitted,
+    versions,
 )
 from paper_replication.templates import environment
 
 ACCEPTED = "figures/accepted.json"
+BEGUN = "figures/.accepted.part.json"
+"""While an acceptance writes: the hashes of its files, before and after. Git ignores this file."""
 RECORD = ("made", "data", "code", "versions", "entries")
 """What a record has. `made`, `data` and `code` are hashes of files by path: those that were made,
 and those they were made of. `versions` are by library. `entries` are the parameters of a text; a
-dataset has its own. The record of the reference has no `data`.
+dataset has its own. The record of the reference has no `data`, and no time `made_at`.
 """
 PROVENANCE = {"title", "parameters", "code", "versions", "computed_on", "source", "license"}
 """Attributes of a dataset that say how it was made, and how it may be used."""
 MISSING, UNREADABLE, UNNAMED = "missing", "cannot be compared", "no record names"
 EDITED, STALE = "edited by hand", "stale, remove it and run again; changed since"
 LEFT = "no rule makes it, remove it"
+CONFLICT = "has the marks of a conflict"
 """What may be wrong with a file of one run."""
 SAME: Mapping[str, Sequence[str]] = {"made by": ["the same parameters, code and versions"]}
 STATUS = {"agrees": 0, "follows": 0, "drawn elsewhere": 0, "differs": 1, "not comparable": 2}
@@ -113,9 +124,17 @@ class Run:
         return known | {"parameters": given}
 
     def newer(self, record: Mapping) -> list[str]:
-        """The datasets of a file that were made again after it."""
+        """The datasets of a file that were made again after it. One that was overwritten before
+        is wrong itself.
+        """
         now = {file: known["made"][file] for file, known in self.records.items()}
-        return [file for file, used in record["data"].items() if now.get(file, used) != used]
+        newer = [file for file, used in record["data"].items() if now.get(file, used) != used]
+        there = contents_in(self.folder, newer)
+        return [file for file in newer if there.get(file) != record["data"][file]]
+
+    def uses(self, file: str, made: str) -> bool:
+        """Whether a file was made from a dataset with this hash."""
+        return any(record["data"].get(file) == made for record in self.records.values())
 
     def named(self) -> set[str]:
         """The files that the records name."""
@@ -128,12 +147,17 @@ def run_in(folder: Path, label: str) -> Run:
     damaged = []
     for path in [*sorted(folder.glob("records/*.json")), *folder.glob(ACCEPTED)]:
         name = path.relative_to(folder).as_posix()
+        text = b""
         try:
-            known = {"data": {}} | json.loads(path.read_text("utf-8"))
+            text = path.read_bytes()
+            known = {"data": {}} | json.loads(text)
             record = {key: dict(known[key]) for key in RECORD}
+            record["made_at"] = known.get("made_at")
             records |= dict.fromkeys(record["made"], record)
         except Exception as error:  # Whatever the reader raises for a damaged file.
-            damaged.append(f"{name} cannot be read: {one_line(error)}")
+            is_merged = b"\n<<<<<<< " in b"\n" + text
+            why = CONFLICT if is_merged else f"cannot be read: {one_line(error)}"
+            damaged.append(f"{name} {why}")
     return Run(label, folder, records, damaged)
 
 
@@ -174,7 +198,7 @@ class Checkout:
     made: Collection[str] = ()
 
     def outdated(self, file: str, data: Any, record: Mapping) -> list[str]:
-        """What changed since a file was made: parameters of a dataset or a text, descriptions and
+        """What changed since a file was made: parameters of a dataset or a text, attributes and
         code.
         """
         name = Path(file).stem
@@ -183,9 +207,12 @@ class Checkout:
         known = entries(self.config or {})
         if isinstance(data, xr.Dataset):
             described = self.project.describe(name)
-            variables = {key: each for key, each in data.variables.items() if key in described}
-            now = {key: attributes(described[str(key)], variables[key].dtype) for key in variables}
-            then = {key: variables[key].attrs for key in variables}
+            variables = {str(key): each for key, each in data.variables.items()}
+            variables = {key: each for key, each in variables.items() if key in described}
+            now: dict[str, Any] = {**common_attributes(self.project)}
+            then = {key: each for key, each in data.attrs.items() if key in now}
+            now |= {key: attributes(described[key], variables[key].dtype) for key in variables}
+            then |= {key: variables[key].attrs for key in variables}
             lines = changes(plain(then), plain(now)) + lines
             entry = {key: each for key, each in known.get(name, {}).items() if key not in SHOWN_BY}
             settings = record["parameters"].keys() & (self.config or {}).keys()
@@ -212,6 +239,8 @@ class Side:
         Its contents, as `content_of` reads them, and their hash.
     record
         What made it.
+    is_used
+        Whether other files of the run were made from these contents.
     """
 
     path: Path
@@ -219,6 +248,7 @@ class Side:
     contents: Any = None
     hash: str = ""
     record: Mapping[str, Any] = field(default_factory=lambda: {key: {} for key in RECORD})
+    is_used: bool = False
 
     @property
     def shows(self) -> str:
@@ -251,7 +281,8 @@ def side(run: Run, file: str, checkout: Checkout | None = None) -> Side:
         EDITED: [f"{file} of {run.label}"] if record["made"].get(file, made) != made else [],
         STALE: stale,
     }
-    return Side(path, {kind: each for kind, each in checked.items() if each}, data, made, record)
+    wrong = {kind: each for kind, each in checked.items() if each}
+    return Side(path, wrong, data, made, record, run.uses(file, made))
 
 
 # What differs in the contents of a file
@@ -484,8 +515,13 @@ def finding(old: Side, new: Side, checkout: Checkout | None, differing: Collecti
             differences(new.path.name, old.contents, new.contents) if old.hash != new.hash else []
         )
         # A dataset with other bytes than its record says, but with numbers that agree, was written
-        # anew and not edited. That is no excuse for the reference, whose bytes were accepted.
-        is_anew = is_data and not lines and not (checkout and old.wrong)
+        # anew and not edited. That is no excuse for the reference, whose bytes were accepted, nor
+        # for a copy of the other side, or for a file from which others were made since.
+        is_copy = any(
+            EDITED in one.wrong and (one.is_used or one.hash in other.record["made"].values())
+            for one, other in ((old, new), (new, old))
+        )
+        is_anew = is_data and not lines and not is_copy and not (checkout and old.wrong)
         if wrong and not (is_anew and wrong.keys() == {EDITED}):
             return Finding("differs", lines if EDITED in wrong else (), wrong)
         of_contents = of_dataset if is_data else of_product
@@ -669,15 +705,80 @@ def compare(
     return Report(old, new, sides, found)
 
 
+def obstacles(project: Project, report: Report, checkout: Checkout | None) -> Iterator[str]:
+    """Yield why two runs cannot be compared: the record of the reference has the marks of a merge,
+    both are one run, or results of the checkout are of other versions of libraries.
+    """
+    if checkout and any(CONFLICT in line for line in report.old.damaged):
+        files = " ".join(["figures", *project.texts])
+        way = f"`git checkout HEAD -- {files}`, commit, and accept the results of the merge"
+        yield f"{ACCEPTED} {CONFLICT}: {way}"
+    old, new = report.old, report.new
+    is_copy = old.records == new.records and all(each["made_at"] for each in new.records.values())
+    if old.folder.resolve() == new.folder.resolve() or (new.records and is_copy):
+        yield f"{old.label} and {new.label} are the same run"
+    if checkout and checkout.config is not None:
+        yield from other_versions(report)
+
+
+def other_versions(report: Report) -> Iterator[str]:
+    """Yield with which versions the results of a run were made if these are not installed here."""
+    here = versions()
+    records = [new.record["versions"].items() for _, new in report.sides.values()]
+    made = {pair for pairs in records for pair in pairs if pair[0] in PACKAGES} - {*here.items()}
+    if made:
+        lines = [f"{name} {version}, here is {here[name]}" for name, version in sorted(made)]
+        yield f"{report.new.label}, made with {'; '.join(lines)}: remove them and run again"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What an acceptance writes, decided before it writes the first file.
+
+    Attributes
+    ----------
+    contents
+        The new contents of each file of the reference that changes; none if it is removed.
+    hashes
+        Before and after: those of the file that is there, and of the one that will be.
+    record
+        The new record of the reference, if it changes.
+    """
+
+    contents: Mapping[str, bytes | None]
+    hashes: Mapping[str, Sequence[str]]
+    record: bytes | None
+
+
 def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     """Make results the reference, and return the files that were written or removed.
 
-    `inputs` are the files that the rules make, in the folder of the results. If one file of a
-    figure or a table is written, all files of its dataset are: then the reference agrees on
-    processors that round numbers differently. If all agree, they stay as they are, and only the
-    code and the libraries that gave them again are noted. Files that no rule makes any more are
-    removed if git tracks them and the record of the reference names them. Raises ValueError if a
-    result may not be accepted.
+    `inputs` are the files that the rules make, in the folder of the results. Each file is written
+    atomically, and the record last: an acceptance that was interrupted can be repeated. Raises
+    ValueError if a result may not be accepted, or if a file of the reference would be lost.
+    """
+    plan = planned(project, results, inputs)
+    begun = project.top / BEGUN
+    if plan.contents:
+        write(begun, json.dumps(plan.hashes).encode())
+    for file, contents in plan.contents.items():
+        if contents is None:
+            (project.top / file).unlink(missing_ok=True)
+        else:
+            write(project.top / file, contents)
+    if plan.record:
+        write(project.top / ACCEPTED, plan.record)
+    begun.unlink(missing_ok=True)
+    return [*plan.contents]
+
+
+def planned(project: Project, results: Path, inputs: Iterable[str]) -> Plan:
+    """What `accept` has to write.
+
+    If one file of a figure or a table is written, all files of its dataset are: then the reference
+    agrees on processors that round numbers differently. If all agree, they stay as they are, and
+    only the code and the libraries that gave them again are noted. Files that no rule makes any
+    more are removed if git tracks them and the record of the reference names them.
     """
     # Read before git says that it is committed, and before results are compared with it.
     committed = tree(project.checkout, "HEAD", "--", *project.code)
@@ -695,23 +796,21 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     changed = {
         new.shows for file, (_, new) in accepted.items() if report.found[file].verdict != "agrees"
     }
-    written = [
-        file
-        for file, (before, after) in accepted.items()
-        if after.shows in changed and before.hash != after.hash
-    ]
+    after = {
+        file: new.hash
+        for file, (old, new) in accepted.items()
+        if new.shows in changed and old.hash != new.hash
+    }
     removed = [
         file
         for file in report.old.records
         if file not in made and git(project.checkout, "ls-files", str(project.top / file))
     ]
-    for file in written:
-        write(project.top / file, (results / file).read_bytes())
-    for file in removed:
-        (project.top / file).unlink(missing_ok=True)
+    contents = {file: (results / file).read_bytes() for file in after}
+    hashes = states(project, report, [*after, *removed], after)
     text = report.new.records[project.texts[0]]
     record = {
-        "made": contents_in(project.top, accepted),
+        "made": {file: after.get(file, old.hash) for file, (old, _) in accepted.items()},
         "code": code,
         "versions": text["versions"],
         "entries": text["entries"],
@@ -720,16 +819,42 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     then = next(iter(report.old.records.values()), {})
     python = {"python": then.get("versions", {}).get("python")}
     now = record | {"versions": record["versions"] | python}
-    if any(then.get(key) != now[key] for key in now):
-        write(project.top / ACCEPTED, f"{json.dumps(record, indent=0)}\n".encode())
-    return [*written, *removed]
+    is_new = any(then.get(key) != now[key] for key in now)
+    noted = f"{json.dumps(record, indent=0)}\n".encode() if is_new else None
+    return Plan(contents | dict.fromkeys(removed), hashes, noted)
+
+
+def states(
+    project: Project, report: Report, files: Collection[str], after: Mapping[str, str]
+) -> dict[str, list[str]]:
+    """The hashes of files of the reference before and after they change, and those of files that an
+    interrupted acceptance was about to change.
+
+    Raises ValueError if a file would be lost: git does not have it, and no acceptance wrote it.
+    """
+    begun = project.top / BEGUN
+    interrupted = json.loads(begun.read_bytes()) if begun.exists() else {}
+    head = tree(project.top, "HEAD")
+    before = contents_in(project.top, files)
+    lost = []
+    for file, found in before.items():
+        recorded = report.old.records.get(file, {}).get("made", {}).get(file)
+        if found not in {head.get(file), recorded, after.get(file), *interrupted.get(file, [])}:
+            lost.append(file)
+    if edited := " ".join(file for file in lost if file in head):
+        stash = f"move the edit to a template, or keep it by `git stash -- {edited}`"
+        raise ValueError(f"nothing is accepted, edited by hand: {edited}: {stash}")
+    if lost:
+        raise ValueError(f"nothing is accepted, not made by a rule, move it: {' '.join(lost)}")
+    now = {file: [each[file] for each in (before, after) if file in each] for file in files}
+    return interrupted | now
 
 
 def refusals(
     project: Project, report: Report, made: Collection[str], committed: Mapping[str, str]
 ) -> Iterator[str]:
     """Yield why results may not be accepted: the code is not committed, a claim's function raised
-    an exception, a result is not fresh and as recorded, or they were made with several versions of
+    an exception, a result is not fresh and as recorded, or it was made with other versions of
     libraries.
 
     Stop at the first: the later ones read records that exist only if no result is wrong.
@@ -751,9 +876,7 @@ def refusals(
     records = [report.new.records[file] for file in report.found if file in made]
     if unknown := {file for record in records for file in record["code"]} - committed.keys():
         yield f"commit first: git does not know {min(unknown)}"
-    versions = sorted({json.dumps(record["versions"], sort_keys=True) for record in records})
-    if len(versions) != 1:
-        yield f"run from nothing first: {' and '.join(versions)}"
+    yield from other_versions(report)
 
 
 # The command and the rule
@@ -809,7 +932,10 @@ def main(project: Project, arguments: list[str]) -> int:
         # A run in another folder has parameters of its own.
         is_own = new.folder.resolve() == (project.top / "results").resolve()
         checkout = Checkout(project, main_branch(project.checkout), config if is_own else None)
-        report = compare(project, old, new, checkout if len(runs) == 1 else None)
+        judged_by = checkout if len(runs) == 1 else None
+        report = compare(project, old, new, judged_by)
+        if found := [*obstacles(project, report, judged_by)]:
+            parser.error("; ".join(found))
         # No file of somebody else lies there.
         is_zip = paths[-1].is_file()
         folder = paths[-1].with_suffix(".diff") if is_zip else folders[-1] / "diff"
@@ -830,6 +956,9 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
         checkout,
         snakemake.params.names,
     )
+    if found := [*obstacles(project, report, checkout)]:
+        print(*found, sep="\n", file=sys.stderr)
+        return STATUS["not comparable"]
     stream = sys.stderr if report.status else sys.stdout
     return written(project, report, results / "diff", stream)
 

@@ -178,6 +178,18 @@ def without_function(top: Path, needed: Mapping[str, Iterable[str]]) -> Iterator
                 yield f"{name}: {file} needs a function for it"
 
 
+def code_of_packages(folder: Path) -> Iterator[str]:
+    """Yield a line for each `__init__.py` that has more than a docstring and a version.
+
+    No rule lists these files, so that a change of their code would run nothing again.
+    """
+    for file in sorted(folder.rglob("__init__.py")):
+        tree = ast.parse(file.read_text("utf-8"))
+        lines = map(ast.unparse, tree.body[ast.get_docstring(tree) is not None :])
+        if not all(line.startswith("__version__ = ") for line in lines):
+            yield f"{file}: move its code into a module, because no rule lists this file"
+
+
 def registered(file: Path) -> set[str]:
     """The keys of the dictionaries that a file of code has, such as those of its functions; none
     without the file.

@@ -13,6 +13,7 @@ import platform
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -148,11 +149,8 @@ def save(
         where = ", ".join(project.described_in)
         raise ValueError(f"{path.name}: describe {', '.join(unknown)} in {where}")
     complete = dataset.drop_encoding().assign_attrs(
-        Conventions="CF-1.11",
+        common_attributes(project),
         title=title,
-        references=project.references,
-        source=project.source,
-        license=project.license,
         parameters=json.dumps(plain(parameters), sort_keys=True, ensure_ascii=False),
         code=json.dumps(below(project.checkout, sources["code"])),
         versions=json.dumps(sources["versions"]),
@@ -165,6 +163,16 @@ def save(
     packed = {name: {"zlib": True} for name in large if complete[name].dtype.kind in "fib"}
     with whole(path) as unfinished:
         complete.to_netcdf(unfinished, engine="netcdf4", encoding=packed)
+
+
+def common_attributes(project: Project) -> dict[str, str]:
+    """The attributes that all datasets of a project have."""
+    return {
+        "Conventions": "CF-1.11",
+        "references": project.references,
+        "source": project.source,
+        "license": project.license,
+    }
 
 
 def computed_on() -> str:
@@ -243,6 +251,7 @@ def save_record(snakemake: Any, sources: Mapping[str, Mapping], project: Project
         "code": below(project.checkout, sources["code"]),
         "versions": sources["versions"],
         "entries": plain(getattr(snakemake.params, "entries", {})),
+        "made_at": datetime.now(UTC).isoformat(),
     }
     write(path, f"{json.dumps(found, indent=1, sort_keys=True)}\n".encode())
 

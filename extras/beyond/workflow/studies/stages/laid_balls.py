@@ -122,14 +122,14 @@ def on_contacts(r: float, amplitude: NDArray, ratio: NDArray, contacts: int) -> 
     found = {"impacts": np.zeros(shape, int), "periods": np.ones(shape, int)}
     found |= {"hop": np.zeros(shape), "start_decides": np.zeros(shape, bool)}
     leaves = np.flatnonzero(every > permanent_contact(ratios, ball.zeta))
-    row, moving = ball.rows(leaves), every[leaves]
-    laid, other = (in_groups(start(row, moving), contacts) for start in (lift_off, put_down))
-    same = np.isclose(laid["hop"], other["hop"], rtol=SAME)
-    for name in ("impacts", "periods"):
-        same &= laid[name] == other[name]
-    laid["start_decides"] = ~same & (laid["periods"] > 0) & (other["periods"] > 0)
-    for name, values in laid.items():
+    for name, values in in_groups(lift_off(ball.rows(leaves), every[leaves]), contacts).items():
         found[name].flat[leaves] = values
+    known = leaves[found["periods"].flat[leaves] > 0]
+    other = in_groups(put_down(ball.rows(known), every[known]), contacts)
+    same = np.isclose(found["hop"].flat[known], other["hop"], rtol=SAME)
+    for name in ("impacts", "periods"):
+        same &= found[name].flat[known] == other[name]
+    found["start_decides"].flat[known] = ~same & (other["periods"] > 0)
     return found
 
 

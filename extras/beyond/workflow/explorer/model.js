@@ -251,11 +251,10 @@ function multipliersOf(trace, determinant) {
 // As `is_stable` of the replication: without damping, where the determinant is 1, marginally.
 const isStable = (trace, determinant) =>
   Math.abs(trace) < 1 + determinant - 1e-9 && determinant < 1 + 1e-9;
-const NO_BALL = "no ball follows it";
 // What an orbit at Λ is, in words for each model.
 function stateOf({exists, is_stable, trace, determinant, amplitude, obstacle}, limits) {
   if (!exists) return amplitude < limits.saddle_node ? "below the saddle-node" : "no orbit";
-  if (obstacle) return `${NO_BALL}: ${obstacle}`;
+  if (obstacle) return `no ball follows it: ${obstacle}`;
   if (!is_stable) return trace < 0 ? "doubled" : "unstable";
   return determinant > 1 - 1e-9 ? "marginally stable" : "stable";
 }

@@ -153,7 +153,7 @@ function fillTables(found, question) {
     : "Times Ωt, lengths Ω²z/g, velocities Ωż/g";
   $("orbit-rows").replaceChildren(
     row("stability", cells((o, l, k) => [found.states[k], found.states[k], "state"])),
-    row("admissible", cells(o => [!o.exists ? "no orbit" : o.obstacle ? `no: ${o.obstacle}` : "yes", !o.obstacle, "admissible"])),
+    row("admissible", cells(o => [!o.exists ? "no orbit" : o.obstacle ? `no: ${o.obstacle}` : "yes"])),
     row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
     row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
     ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [written(key, o[key]), o[key], key]))),

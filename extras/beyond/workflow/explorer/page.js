@@ -64,7 +64,8 @@ function show(hash, kept = DEFAULTS) {
   }
   const onStage = state.tab === "stage", asks = state.tab === "question";
   document.body.dataset.tab = state.tab;
-  for (const part of document.querySelectorAll("[data-tabs]")) part.hidden = !part.dataset.tabs.split(" ").includes(state.tab);
+  for (const part of document.querySelectorAll("[data-tabs]"))
+    part.hidden = !part.dataset.tabs.split(" ").includes(state.tab);
   $("play").hidden = false;
   $("h-motion").textContent = asks ? "Which ball flies higher?" : "One cycle";
   $("call-name").textContent = "The same with bouncing_ball_beyond in Python:";
@@ -170,8 +171,9 @@ document.querySelectorAll("input[inputmode]").forEach(typed => typed.addEventLis
     const whole = WHOLE.includes(typed.dataset.name) ? "whole " : "";
     const label = document.querySelector(`label[for=${typed.id}]`).textContent;
     const units = Object.keys(UNITS[typed.dataset.name] ?? {}).join(", "), ways = otherwise(typed.value);
-    refuse(ways.length ? `${label}: instead of ${typed.value.trim()} write ${ways.join(" or ")}.` : `${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}`
-      + `${units && `, alone or with a unit: ${units}`}.`);
+    refuse(`${label}: ` + (ways.length ? `instead of ${typed.value.trim()} write ${ways.join(" or ")}.`
+      : `${typed.value || "this"} is not a ${whole}number from ${low} to ${high}`
+        + `${units && `, alone or with a unit: ${units}`}.`));
   } else change(typed.dataset.name, numberOf(typed.value, typed.dataset.name));
 }));
 document.querySelectorAll("input[type=range]").forEach(slider => slider.addEventListener("input", () => {

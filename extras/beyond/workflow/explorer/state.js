@@ -63,9 +63,10 @@ function numberOf(text, name) {
 }
 
 // The state of a hash, and what in it was no value: that has its default. Names that are not in the
-// hash have the values of `kept`. Without a hash the page begins with its question. A scene is a state of the stage by its name. A hash with values and
-// without a tab is a dimensionless case. Its contact ends as in the paper, as that of a scene or of a
-// stage without a release does. What the tab does not use is left out, too.
+// hash have the values of `kept`. Without a hash the page begins with its question. A scene is a state
+// of the stage by its name. A hash with values and without a tab is a dimensionless case. Its contact
+// ends as in the paper, as that of a scene or of a stage without a release does. What the tab does not
+// use is left out, too.
 function parse(hash, kept = DEFAULTS) {
   const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
   const begins = kept === DEFAULTS && (hash.length < 2 || given.get("tab") === "question");

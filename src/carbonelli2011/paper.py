@@ -129,7 +129,9 @@ PARAMETERS: dict[str, dict] = {
         "phase": 1.0,
         "impact_speed": 5.0,
     },
-    "table1": on_contacts(n=Among("n", [1, 2, 3]), restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
+    "table1": on_contacts(
+        n=Among("n", [1, 2, 3]), restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1
+    ),
     "thresholds": on_contacts(
         n=1,
         restitution=0.65,

@@ -102,8 +102,9 @@ def impact_instant(parameters: dict, release: str) -> xr.Dataset:
     """A contact in each case, and the impact at an instant that is equivalent outside of it.
 
     Times are counted from the impact of the restitution model, and half of the samples are in the
-    contact. The equivalent impact is at the centroid of the contact force (`Family.centroid`). If the
-    ball rises after the contact, its summit differs from that of the restitution model by
+    contact. The equivalent impact is at the centroid of the contact force (`Family.centroid`).
+
+    If the ball rises after the contact, its summit differs from that of the restitution model by
     `depth + table_rise`.
     """
     n = parameters["n"]

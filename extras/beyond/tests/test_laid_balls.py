@@ -110,6 +110,19 @@ def test_a_motion_that_rounding_decides_is_unknown():
     assert laid_balls.on_contacts(0.65, *given, 400)["periods"].item() == 0
 
 
+def test_a_ball_with_a_small_r_ends_on_the_orbit_that_flies():
+    given = 0.1, np.array([2.8]), np.array([100.0])
+    hop = laid_balls.on_contacts(*given, 400)["hop"].item()
+    assert hop == pytest.approx(laid_balls.flying(*given).item(), rel=1e-6)
+    tau, _, flight, leaves, speed = own_motion(SpringDamper(100.0, restitution=0.1), 2.8, 40)
+    assert tau[-1] - tau[-2] == pytest.approx(PERIOD, abs=1e-6)
+    assert hop == pytest.approx(own_hop(2.8, leaves[-1], speed[-1], flight[-1]), rel=1e-5)
+    reached = [
+        laid_balls.along_flying(r, 3, np.array([100.0]), 400)["scan_reached"] for r in (0.1, 0.65)
+    ]
+    assert reached[0] > 0 and reached[1] == 0
+
+
 def test_the_branch_of_one_contact_ends_where_the_ball_touches_the_surface_within_it():
     ball = SpringDamper(10.0, restitution=0.65)
     counts = laid_balls.on_contacts(0.65, np.array([1.1, 1.107, 1.115]), np.array([10.0]), 400)

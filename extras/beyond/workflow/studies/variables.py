@@ -81,6 +81,15 @@ VARIABLES = SYMBOLS | {
         "max δ",
     ),
     "shown_ratio": Variable("frequency ratio of a line", "ϖ"),
+    "scan_restitution": Variable("restitution coefficient", "r"),
+    "scan_known": Variable(
+        "points in the stable range of the flying 1-T orbit at which the motion of a laid ball is "
+        "known"
+    ),
+    "scan_reached": Variable("points of these at which the laid ball ends on this orbit"),
+    "scan_share": Variable(
+        "largest height of the hops of the others over that on this orbit", tolerance=1e-6
+    ),
     "shown_hop": Variable(
         "maximum height above the table; missing if the motion is not known",
         "max δ",

@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball.spring_damper import damping_ratio, permanent_contact
 from bouncing_ball_beyond.contacts.balls import FEW_BALLS, Rigid, SpringDamper
 from bouncing_ball_beyond.motions.bounces import Balls, Leaving, bounce, fly, reduced
@@ -148,6 +149,22 @@ def flying(r: float, amplitude: NDArray, ratio: NDArray) -> NDArray:
     return hop.reshape(amplitude.size, ratio.size)
 
 
+def along_flying(r: float, positions: int, ratio: NDArray, contacts: int) -> dict[str, float]:
+    """Laid balls in the stable range of the flying 1-T orbit above Λ = 1.
+
+    How many have a known motion, how many of these end on the orbit, and the largest height of the
+    hops of the others, divided by that on the orbit.
+    """
+    low, high = max(saddle_node(1, r), 1.0), period_doubling(1, r)
+    amplitude = low + (high - low) * (np.arange(positions) + 0.5) / positions
+    laid = on_contacts(r, amplitude, ratio, contacts)
+    share = laid["hop"] / flying(r, amplitude, ratio)
+    known = np.isfinite(share)
+    reached = known & (laid["periods"] == 1) & np.isclose(share, 1, rtol=SAME)
+    highest = share.max(where=known & ~reached, initial=0.0)
+    return {"scan_known": known.sum(), "scan_reached": reached.sum(), "scan_share": highest}
+
+
 def ext_laid(parameters: dict) -> xr.Dataset:
     """Motions of laid balls on contacts and in the restitution model, by r."""
     amplitude = grid(parameters["amplitude"], np.linspace)
@@ -168,7 +185,13 @@ def ext_laid(parameters: dict) -> xr.Dataset:
             one[f"rigid_{name}"] = "amplitude", rigid[name]
         datasets.append(one)
     found = xr.concat(datasets, "restitution")
+    scanned = parameters["scan_restitution"]
+    given = parameters["scan_positions"], np.array(parameters["scan_ratio"]), contacts
+    scan = [along_flying(r, *given) for r in scanned]
+    for name in scan[0]:
+        found[name] = "scan_restitution", [each[name] for each in scan]
     return found.assign_coords(
+        scan_restitution=scanned,
         restitution=parameters["restitution"],
         amplitude=amplitude,
         frequency_ratio=ratio,

@@ -443,11 +443,38 @@ class Rigid(Ball):
         return Signature(self._restitution(u) + nothing, nothing, nothing, nothing)
 
 
-def restitution_of(pairs: Values) -> Callable:
+@dataclass(frozen=True)
+class RestitutionFit:
+    """The fit r(v) = 1/(1 + C v^q) to measured pairs, a function of v; see `restitution_of`.
+
+    Attributes
+    ----------
+    logarithm : float
+        ln C.
+    exponent : float
+        q.
+    residual : float
+        Largest modulus of the difference between a measured r and the fit.
+    at : float
+        Speed of the pair with this difference.
+    """
+
+    logarithm: float
+    exponent: float
+    residual: float = 0.0
+    at: float = np.nan
+
+    def __call__(self, v: Values) -> Values:
+        return 1 / (1 + np.exp(self.logarithm + self.exponent * np.log(v)))
+
+
+def restitution_of(pairs: Values) -> RestitutionFit:
     """Fit r(v) = 1/(1 + C v^q) to measured pairs of a closing speed v and r by least squares.
 
     This r is in (0, 1) at every speed, and is a power of the speed where it is small. Other shapes
-    are approximated over the measured speeds.
+    are approximated over the measured speeds: ``residual`` of the result says how far a pair is
+    from the fit. A fit is used, and no interpolation, because measured pairs scatter: the slope of
+    an interpolation is that of the scatter, and the slope decides on stability.
 
     Parameters
     ----------
@@ -456,7 +483,7 @@ def restitution_of(pairs: Values) -> Callable:
 
     Returns
     -------
-    callable
+    RestitutionFit
         Analytic function r(v), for ``Rigid``.
 
     Raises
@@ -469,6 +496,8 @@ def restitution_of(pairs: Values) -> Callable:
     >>> r = restitution_of([(1.0, 0.90), (2.0, 0.86), (4.0, 0.81)])
     >>> r(np.array([1.0, 3.0])).round(2).tolist()
     [0.9, 0.83]
+    >>> round(r.residual, 4), r.at
+    (0.0016, 2.0)
     """
     try:
         speeds, measured = np.asarray(pairs, float).T
@@ -479,16 +508,17 @@ def restitution_of(pairs: Values) -> Callable:
         ) from None
     if not np.all((speeds > 0) & (speeds < np.inf) & (measured > 0) & (measured <= 1)):
         raise ValueError("restitution: pairs (speed, r) must have speeds > 0 and r in (0, 1]")
-    logarithms = np.log(speeds)
-    if np.ptp(logarithms) < 1e-6:
+    if np.ptp(np.log(speeds)) < 1e-6:
         raise ValueError("restitution: all pairs have one speed: give their mean r as a number")
+    start = np.log(1 / min(measured.mean(), 0.999) - 1)
 
-    def of(parameters: NDArray, logarithm: Values) -> Values:
-        return 1 / (1 + np.exp(parameters[0] + parameters[1] * logarithm))
+    def misses(given: NDArray) -> NDArray:
+        return RestitutionFit(given[0], given[1])(speeds) - measured
 
-    start = -np.log(1 / min(measured.mean(), 0.999) - 1)
-    fitted = least_squares(lambda given: of(given, logarithms) - measured, [-start, 0.0]).x
-    return lambda v: of(fitted, np.log(v))
+    fitted = least_squares(misses, [start, 0.0]).x
+    residuals = np.abs(misses(fitted))
+    worst = float(residuals.max()), float(speeds[residuals.argmax()])
+    return RestitutionFit(float(fitted[0]), float(fitted[1]), *worst)
 
 
 def damping_of(restitution: Values, release: str = "displacement") -> Values:

@@ -15,6 +15,7 @@ from scipy.optimize.elementwise import find_root
 from bouncing_ball_beyond.contacts.balls import (
     Ball,
     H,
+    Rigid,
     SpringDamper,
     brief,
     check_ball,
@@ -25,9 +26,10 @@ from bouncing_ball_beyond.contacts.balls import (
     whole_number,
 )
 from bouncing_ball_beyond.contacts.laws import ForceLaw
-from bouncing_ball_beyond.periodic.equations import OrbitEquations, are_stable
+from bouncing_ball_beyond.periodic.equations import AT_FOLD, OrbitEquations, are_stable
+from bouncing_ball_beyond.periodic.instants import closing_speeds
 from bouncing_ball_beyond.periodic.march import newton
-from bouncing_ball_beyond.periodic.search import AT_FOLD, guess_of_instants, rows_of
+from bouncing_ball_beyond.periodic.search import guess_of_instants, rows_of
 from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
 
 QUANTITIES = (
@@ -119,7 +121,11 @@ class FreeImpact(NamedTuple):
 
 
 def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
-    """Compute the free impact of a ball at the speed v₀, the root of (1 + r(v)) v = 2nπ.
+    """Compute the free impact of a ball at the speed v₀, a root of (1 + r(v)) v = 2nπ.
+
+    r(v) is that of the ball: of free impacts of a contact, or as given to :class:`.Rigid`. If r
+    falls so fast that there are several roots, v₀ is one of them, to which Newton's method leads
+    from 1.5 nπ. ``others`` of an orbit names the others.
 
     Parameters
     ----------
@@ -145,13 +151,17 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
     check_ends("ball", ball, speed)
     step = speed
     # After a step of Newton's method the error is of the order of the square of the step.
-    while np.any(np.abs(step) > 1e-8 * speed):
+    for _ in range(NEWTON):
+        if not np.any(np.abs(step) > 1e-8 * speed):
+            break
         at = speed + 1j * H
         signature = ball.signature(at)
         bounced = signature.restitution * at
         step = (speed + bounced.real - 2 * half) / (1 + bounced.imag / H)
         # nπ ≤ v ≤ 2nπ, because 0 ≤ r ≤ 1. The duration broadcasts to the shape of all parameters.
         speed = np.clip(speed - step, half, 2 * half) + 0 * np.real(signature.duration)
+    else:
+        speed = _nearest_root(ball, n, speed, np.abs(step) > 1e-8 * speed)
     aside = 1e-4 * speed
     at = np.stack([speed - aside, speed, speed + aside]) + 1j * H
     values = np.array(np.broadcast_arrays(*ball.signature(at), at))
@@ -169,6 +179,21 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
         load=load,
         load_slope=values[3, 1].imag / H,
     )
+
+
+NEWTON = 60
+"""Number of steps of Newton's method after which the speeds are searched by bracketing, because r
+changes too fast. Usual balls take about five."""
+
+
+def _nearest_root(ball: Ball, n: ArrayLike, speed: NDArray, lost: NDArray) -> NDArray:
+    """Replace speeds that are ``lost`` by the root of (1 + r(v)) v = 2nπ nearest to 1.5 nπ."""
+    row, (periods,), _ = rows_of(ball, n=n)
+    speed = np.array(speed)
+    for i in np.flatnonzero(lost):
+        speeds = closing_speeds(row.rows(i), int(periods[i]))
+        speed.flat[i] = speeds[np.abs(speeds - 1.5 * np.pi * periods[i]).argmin()]
+    return speed
 
 
 def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDArray:
@@ -214,25 +239,58 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
 
 
 class Compared(dict[str, Any]):
-    """Errors or thresholds by the name of the quantity.
+    """Values, errors or thresholds by the name of the quantity.
 
     Attributes
     ----------
     unstable : array of str
         Which of the orbits that are compared is unstable: "", "in the simple model", "on the
         contact" or "in both models". "" if there is no orbit, or none is compared.
+    inadmissible : array of str
+        Which of these orbits no ball follows, and why, such as "on the contact: a flight passes
+        below the table".
     """
 
     unstable: NDArray
+    inadmissible: NDArray
 
-    def __init__(self, values: dict, unstable: NDArray) -> None:
+    def __init__(self, values: dict, simple: "Flags", contact: "Flags") -> None:
         super().__init__(values)
-        self.unstable = unstable
+        self.unstable, self.inadmissible = _texts(simple, contact)
 
+
+class Flags(NamedTuple):
+    """What is to be known of n-T orbits before something is concluded from them.
+
+    Attributes
+    ----------
+    unstable : array of bool
+        Whether the orbit exists and is unstable.
+    obstacle : array of str
+        Why no ball follows the orbit; "" if a ball does, or if there is no orbit.
+    """
+
+    unstable: NDArray
+    obstacle: NDArray
+
+
+NONE = Flags(np.array(False), np.array(""))
+"""Flags if no orbit is asked for."""
 
 UNSTABLE = np.array(["", "in the simple model", "on the contact", "in both models"])
 """Texts by index: 1 if the orbit of the simple model is unstable, plus 2 if that on the contact is.
 """
+
+
+def _texts(simple: Flags, contact: Flags) -> tuple[NDArray, NDArray]:
+    """Texts of :class:`Compared` on unstable and inadmissible orbits."""
+    unstable = UNSTABLE[simple.unstable + 2 * contact.unstable]
+    pairs = np.broadcast_arrays(simple.obstacle, contact.obstacle)
+    texts = [
+        "; ".join(f"{where}: {why}" for where, why in zip(UNSTABLE[1:3], each, strict=True) if why)
+        for each in zip(*map(np.ravel, pairs), strict=True)
+    ]
+    return unstable, np.reshape(texts, pairs[0].shape)[()]
 
 
 def law_errors(
@@ -261,8 +319,9 @@ def law_errors(
     -------
     Compared
         Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. The law
-        does not decide on the stability on the contact: ``unstable`` is "in the simple model" or
-        "". The function ``contact_values(Rigid(r), …)`` gives the Λ of the period doubling.
+        does not decide on the orbit on the contact: ``unstable`` and ``inadmissible`` are those of
+        the simple model. The function ``contact_values(Rigid(r), …)`` gives the Λ of the period
+        doubling.
 
     Examples
     --------
@@ -294,13 +353,34 @@ def law_errors(
             "saddle_node": np.divide(-shift, impact.line) + 0 * reference["saddle_node"],
             "period_doubling": doubling + 0 * reference["period_doubling"],
         }
-    return Compared(errors, UNSTABLE[1 * _leaves(impact, rise)])
+    return Compared(errors, _simple_flags(impact, amplitude, table, phase, rise), NONE)
 
 
-def _leaves(impact: FreeImpact, push: Values) -> NDArray:
-    """Whether the orbit of the restitution model exists and is unstable."""
+def _simple_flags(
+    impact: FreeImpact, amplitude: NDArray, table: Table, phase: NDArray, push: NDArray
+) -> Flags:
+    """Flags of the orbits of the restitution model, whose impacts have this phase and -w″."""
     trace, determinant = restitution_trace(impact, push)
-    return np.isfinite(trace) & ~are_stable(trace, determinant)
+    unstable = np.isfinite(trace) & ~are_stable(trace, determinant)
+    given = np.broadcast_arrays(phase, impact.speed, amplitude, impact.restitution, impact.n)
+    tau, u, scale, r, n = (each.ravel() for each in given)
+    # r is above 1 by rounding in free impacts without loss.
+    equations = OrbitEquations(Rigid(np.clip(r, 0, 1)), 1, n, table=table)
+    obstacle = _obstacles(equations, np.stack([tau, u, scale], axis=-1))
+    return Flags(unstable, obstacle.reshape(given[0].shape))
+
+
+def _obstacles(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """Why no ball follows orbits, shape (rows,); "" for rows that are NaN."""
+    exist = np.flatnonzero(np.isfinite(z[:, 0]))
+    found = np.full(len(z), "", object)
+    for block in np.array_split(exist, exist.size // BLOCK + 1) if exist.size else []:
+        found[block] = equations.rows(block).obstacles(z[block])
+    return found.astype(str)
+
+
+BLOCK = 4096
+"""Number of orbits that are computed at once, which limits the memory."""
 
 
 def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
@@ -336,7 +416,14 @@ def law_coefficients(
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, table=table)
     values = {name: np.imag(error) / H for name, error in errors.items()}
-    return Compared(values, errors.unstable)
+    return _with_flags_of(errors, values)
+
+
+def _with_flags_of(orbits: Compared, values: dict) -> Compared:
+    """Return values that belong to the same orbits as others."""
+    found = Compared(values, NONE, NONE)
+    found.unstable, found.inadmissible = orbits.unstable, orbits.inadmissible
+    return found
 
 
 def law_thresholds(
@@ -385,7 +472,7 @@ def law_thresholds(
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
     for name in ("max_height", "phase"):
         found[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
-    return Compared(found, coefficients.unstable)
+    return _with_flags_of(coefficients, found)
 
 
 @np.errstate(invalid="ignore", divide="ignore")
@@ -456,10 +543,11 @@ def contact_values(
     n: ArrayLike = 1,
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
-) -> dict:
+) -> Compared:
     """Compute quantities of the n-T orbit of a ball, and the Λ of its bifurcations.
 
-    The orbit is on the stable side of the saddle-node. It may be inadmissible.
+    The orbit is on the stable side of the saddle-node. If r(v) has several closing speeds, it is
+    the orbit that closes near the speed of :func:`free_impact`.
 
     Parameters
     ----------
@@ -472,12 +560,26 @@ def contact_values(
 
     Returns
     -------
-    dict of arrays
-        Values by name. They are NaN if there is no orbit. The phase is counted from the phase at
+    Compared
+        Arrays by name. They are NaN if there is no orbit. ``unstable`` and ``inadmissible`` name
+        orbits that are, as "on the contact". The phase is counted from the phase at
         which the table rises fastest, which is 0 for a sine. A corrected ball has instantaneous
         impacts. Its phase, velocity and apparent restitution belong to contacts that start t_c
         before these impacts and end D - t_c after them.
     """
+    values, flags = _contact_values(ball, amplitude, n, quantities, table)
+    return Compared(values, NONE, flags)
+
+
+def _contact_values(
+    ball: Ball,
+    amplitude: ArrayLike,
+    n: ArrayLike,
+    quantities: Sequence[str],
+    table: Table,
+    judged: bool = True,
+) -> tuple[dict, Flags]:
+    """Values of :func:`contact_values`, and flags of the orbits if they are ``judged``."""
     if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
         raise ValueError(
             f"quantities = {quantities!r}: must be a list of names from {', '.join(QUANTITIES)}"
@@ -492,23 +594,40 @@ def contact_values(
         if name in found:
             found[name] = _bifurcation(row, periods, name, table)
     of_orbits = [name for name in quantities if name not in BIFURCATIONS]
-    # Blocks of about 4096 orbits limit the memory.
-    blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // 4096 + 1)
+    unstable = np.zeros(amplitudes.size, bool)
+    obstacle = np.full(amplitudes.size, "", object)
+    blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // BLOCK + 1)
     for block in blocks if of_orbits else []:
         equations = OrbitEquations(row, 1, periods, table=table).rows(block)
         z = rows_of_orbits(equations, amplitudes[block])
         good = np.isfinite(z[:, 0])
         if good.any():
-            of_block = _values(equations.rows(good), z[good])
+            of_block, at = equations.rows(good), block[good]
+            values = _values(of_block, z[good])
             for name in of_orbits:
-                found[name][block[good]] = of_block[name]
-    return {name: values.reshape(shape) for name, values in found.items()}
+                found[name][at] = values[name]
+            if judged:
+                linear = of_block.linearized(z[good])
+                unstable[at] = ~of_block.stable(linear)
+                obstacle[at] = of_block.obstacles(z[good], linear)
+    flags = Flags(unstable.reshape(shape), obstacle.astype(str).reshape(shape))
+    return {name: values.reshape(shape) for name, values in found.items()}, flags
+
+
+APART = 0.02
+"""Difference of r, between the orbit and the free impact, from which they count as different."""
 
 
 def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     """Find n-T orbits on the stable side of the saddle-node, shape (rows, N), or NaN."""
+    ball, table = equations.ball, equations.table
     periods = np.broadcast_to(equations.periods, amplitude.shape)
-    guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
+    guess = guess_of_instants(ball, periods, amplitude, table=table)
+    # If there are several closing speeds, the orbit is that of the free impact.
+    speed = np.broadcast_to(free_impact(ball, periods).speed, amplitude.shape)
+    r, own = (ball.signature(u).restitution for u in (guess[:, 1], speed))
+    if np.any(np.abs(r - own) > APART):
+        guess = guess_of_instants(ball, periods, amplitude, table=table, start=speed)
     # At a saddle-node each Newton step only halves the error.
     solution = newton(equations, guess, iterations=30)
     good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
@@ -602,7 +721,8 @@ def exact_errors(
     Returns
     -------
     Compared
-        Arrays by the names in ``quantities``. ``unstable`` names the unstable orbits.
+        Arrays by the names in ``quantities``. ``unstable`` and ``inadmissible`` name orbits on
+        which no ball stays.
 
     Examples
     --------
@@ -617,12 +737,8 @@ def exact_errors(
     >>> str(exact_errors(ball, amplitude=1.6).unstable)
     'in both models'
     """
-    errors = _exact_errors(ball, amplitude, n, simple, quantities, table)
-    shape = np.shape(next(iter(errors.values()), 0.0))
-    unstable = np.zeros(shape, int)
-    if not set(quantities) <= BIFURCATIONS:
-        unstable = _unstable(ball, amplitude, n, simple, table)
-    return Compared(errors, UNSTABLE[unstable])
+    errors, flags = _exact_errors(ball, amplitude, n, simple, quantities, table)
+    return Compared(errors, *flags)
 
 
 def _exact_errors(
@@ -632,42 +748,28 @@ def _exact_errors(
     simple: Callable | None,
     quantities: Sequence[str],
     table: Table,
-) -> dict:
-    """Return the errors of :func:`exact_errors`, without asking whether orbits are stable."""
+    judged: bool = True,
+) -> tuple[dict, tuple[Flags, Flags]]:
+    """Return errors, and the flags of the orbits of the simple model and of the contact."""
     if not (simple is None or callable(simple)):
         raise ValueError(f"simple = {brief(simple)}: must map a ball to a ball, such as Corrected")
-    given: dict = {"amplitude": amplitude, "n": n, "quantities": quantities, "table": table}
-    exact = contact_values(ball, **given)
-    if simple is None:
-        reference = restitution_values(free_impact(ball, n), amplitude, table)
+    judged = judged and not set(quantities) <= BIFURCATIONS
+    given = amplitude, n, quantities, table, judged
+    exact, of_contact = _contact_values(ball, *given)
+    of_simple = NONE
+    if simple is not None:
+        reference, of_simple = _contact_values(simple(ball), *given)
     else:
-        reference = contact_values(simple(ball), **given)
+        impact = free_impact(ball, n)
+        reference = restitution_values(impact, amplitude, table)
+        if judged:
+            scale = off_rounding(impact, amplitude, table)
+            phase, _, push, _ = table.instant(impact.line, scale)
+            of_simple = _simple_flags(impact, scale, table, phase, push)
     with np.errstate(invalid="ignore", divide="ignore"):
         scales = {name: reference[name] for name in quantities} | {"phase": 2 * np.pi}
-        return {name: (exact[name] - reference[name]) / scales[name] for name in quantities}
-
-
-def _unstable(
-    ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Callable | None, table: Table
-) -> NDArray:
-    """Indices into :data:`UNSTABLE` for the n-T orbits of a ball and of its simple model."""
-    if simple is None:
-        impact = free_impact(ball, n)
-        at = table.instant(impact.line, off_rounding(impact, amplitude, table))
-        of_simple = _leaves(impact, at[2])
-    else:
-        of_simple = _are_unstable(simple(ball), amplitude, n, table)
-    return of_simple + 2 * _are_unstable(ball, amplitude, n, table)
-
-
-def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) -> NDArray:
-    """Whether n-T orbits on the stable side of the saddle-node exist and are unstable."""
-    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
-    equations = OrbitEquations(row, 1, periods, table=table)
-    z = rows_of_orbits(equations, amplitudes)
-    with np.errstate(invalid="ignore"):
-        stable = equations.stable(equations.linearized(z))
-    return (np.isfinite(z[:, 0]) & ~stable).reshape(shape)
+        errors = {name: (exact[name] - reference[name]) / scales[name] for name in quantities}
+    return errors, (of_simple, of_contact)
 
 
 class ErrorThreshold(NamedTuple):
@@ -683,14 +785,15 @@ class ErrorThreshold(NamedTuple):
         - "exceeded": the error exceeds the tolerance at the largest ratio;
         - "first orbit": it is within the tolerance from the first ratio with an orbit on;
         - "no orbit": there is no orbit at the largest ratio.
-    unstable : array of str
-        Which orbit is unstable, as in :class:`Compared`: at ``ratio``, or at the largest ratio if
-        ``ratio`` is NaN.
+    unstable, inadmissible : array of str
+        Which orbit is unstable or followed by no ball, as in :class:`Compared`: at ``ratio``, or at
+        the largest ratio if ``ratio`` is NaN.
     """
 
     ratio: NDArray
     status: NDArray
     unstable: NDArray
+    inadmissible: NDArray
 
 
 def error_thresholds(
@@ -749,7 +852,7 @@ def error_thresholds(
     shape = rows_of(path(high), amplitude=amplitude)[2]
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))
-    errors = _exact_errors(path(ratios), *given, quantities, table)
+    errors, _ = _exact_errors(path(ratios), *given, quantities, table, judged=False)
     # The thresholds of quantities of one orbit are found together. Each bifurcation is found alone.
     alone = [name for name in quantities if name in BIFURCATIONS]
     together = [name for name in quantities if name not in alone]
@@ -761,7 +864,7 @@ def error_thresholds(
             ratio = np.full((len(logarithms), len(names), *shape), float(high))
             rows = ratio.reshape(len(logarithms), -1)
             rows[:, places] = np.exp(logarithms)
-            there = _exact_errors(path(ratio), *given, names, table)
+            there, _ = _exact_errors(path(ratio), *given, names, table, judged=False)
             error = np.stack([there[name][:, j] for j, name in enumerate(names)], axis=1)
             # The error is nearly proportional to 1/ϖ, so its logarithm is nearly linear in ln ϖ.
             return np.log(np.abs(error.reshape(rows.shape)[:, places]) / tolerance)
@@ -787,9 +890,8 @@ def error_thresholds(
             ratio[places] = np.exp(at.x)
         of_names = ratio.reshape(-1, *shape), status.reshape(-1, *shape)
         for name, ratio, status in zip(names, *of_names, strict=True):
-            unstable = np.zeros(shape, int)
-            if name not in alone:
-                there = path(np.where(np.isfinite(ratio), ratio, high))
-                unstable = _unstable(there, *given, table)
-            found[name] = ErrorThreshold(ratio, status, UNSTABLE[unstable])
+            of_orbit = [name] if name not in alone else []
+            there = path(np.where(np.isfinite(ratio), ratio, high))
+            _, flags = _exact_errors(there, *given, of_orbit, table)
+            found[name] = ErrorThreshold(ratio, status, *_texts(*flags))
     return {name: found[name] for name in quantities}

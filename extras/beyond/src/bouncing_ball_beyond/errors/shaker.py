@@ -1,17 +1,18 @@
 """Decide whether a restitution coefficient is good enough for a given ball and shaker.
 
-It is good enough if the ball bounces and its orbit is stable in both models, and if the heights of
-both models differ by at most a tolerance.
+It is good enough if the ball follows the orbit and the orbit is stable in both models, and if the
+heights of both models differ by at most a tolerance.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from bouncing_ball_beyond.contacts.balls import (
     Ball,
+    RestitutionFit,
     Rigid,
     SpringDamper,
     checked,
@@ -33,7 +34,12 @@ from bouncing_ball_beyond.errors.error_law import (
     restitution_values,
     rows_of_orbits,
 )
-from bouncing_ball_beyond.periodic.equations import NEUTRAL, OrbitEquations, multipliers_of
+from bouncing_ball_beyond.periodic.equations import (
+    NEUTRAL,
+    OrbitEquations,
+    multipliers_of,
+    other_orbits,
+)
 from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
 
 STANDARD_GRAVITY = 9.80665
@@ -87,7 +93,8 @@ class ShakerAnswer:
     tolerance: float
     """Largest relative error of the height that is allowed."""
     saddle_node: ByModel
-    """Λ above which the ball bounces."""
+    """Λ of the saddle-node, at which the orbit begins. Above it a ball bounces if it can follow the
+    orbit: see `obstacle`."""
     period_doubling: ByModel
     """Λ at which the period of the orbit doubles."""
     max_height: ByModel
@@ -98,11 +105,27 @@ class ShakerAnswer:
     """Floquet multiplier of the larger modulus, in the restitution model and on the contact."""
     table: Table = SINE
     """Waveform of the table."""
+    obstacle: tuple[str, str] = ("", "")
+    """Why no ball follows the orbit, in the restitution model and on the contact; or ""."""
+    others: tuple[float, ...] = ()
+    """Closing speeds, in m/s, of other orbits with one impact in n periods, which are not judged.
+    They have another r(v), or are next to another rise of the table.
+    """
+    at_longest: str = ""
+    """Why no ball stays on an orbit with the longest contact; or ""."""
+    fit: str = ""
+    """How well the r that is used fits measured pairs; or ""."""
+
+    @property
+    def _begun(self) -> tuple[bool, ...]:
+        """Whether a ball follows an orbit, in the restitution model and on the contact."""
+        pairs = zip(self.saddle_node[:2], self.obstacle, strict=True)
+        return tuple(value <= self.amplitude and not why for value, why in pairs)
 
     @property
     def bounces(self) -> bool:
-        """Whether the orbit exists in the restitution model and on the contact."""
-        return max(self.saddle_node[:2]) <= self.amplitude
+        """Whether, in the restitution model and on the contact, a ball follows the orbit."""
+        return all(self._begun)
 
     @property
     def stable(self) -> bool:
@@ -130,9 +153,13 @@ class ShakerAnswer:
     @property
     def reason(self) -> str:
         """Why a restitution coefficient is not good enough; empty if it is good enough."""
-        if not self.bounces:
-            where = WHERE[tuple(value > self.amplitude for value in self.saddle_node[:2])]
-            return f"Λ is below the saddle-node {where}, so there is no height to compare"
+        below = tuple(value > self.amplitude for value in self.saddle_node[:2])
+        if any(below):
+            return f"Λ is below the saddle-node {WHERE[below]}, so there is no height to compare"
+        if any(self.obstacle):
+            where = WHERE[tuple(map(bool, self.obstacle))]
+            why = " or ".join(dict.fromkeys(filter(None, self.obstacle)))
+            return f"no ball follows the orbit {where}: {why}"
         if any(self._unstable):
             where = WHERE[self._unstable]
             return f"{LOST[self._way][0]} {where}, so a ball does not stay on it"
@@ -150,7 +177,7 @@ class ShakerAnswer:
     def __repr__(self) -> str:
         rows = {
             "": ("restitution", "contact", "error law"),
-            "bounces from Λ": [f"{value:.4g}" for value in self.saddle_node],
+            "begins at Λ": [f"{value:.4g}" for value in self.saddle_node],
             "doubles at Λ": [f"{value:.4g}" for value in self.period_doubling],
             "maximum height/mm": [
                 f"{1e3 * value:.4g}".replace("nan", "–") for value in self.max_height
@@ -169,7 +196,7 @@ class ShakerAnswer:
         return ["Were millimetres meant? Displacements are in m, and accelerations in m/s²."]
 
     def _sentences(self) -> list[str]:
-        begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
+        begun = sum(self._begun)
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
             f"The table moves by ±{1e3 * self.displacement:.4g} mm at {self.frequency:.4g} Hz,"
@@ -178,6 +205,7 @@ class ShakerAnswer:
             f" A contact lasts {1e6 * self.contact_duration:.4g} µs,"
             f" {self.contact_duration * self.frequency:.2%} of a period.",
             *self._doubt(),
+            *([self.fit] if self.fit else []),
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
         ]
         if self.bounces and np.isnan(self.error):
@@ -197,8 +225,14 @@ class ShakerAnswer:
             if self.longest_contact > 0:
                 sentences.append(
                     f"Contacts of up to {1e6 * self.longest_contact:.4g} µs are within this"
-                    " tolerance."
+                    f" tolerance{self.at_longest and f', but with the longest {self.at_longest}'}."
                 )
+        if self.others:
+            speeds = ", ".join(f"{speed:.4g}" for speed in self.others)
+            sentences.append(
+                f"Other orbits with one impact in {periods} close at {speeds} m/s; they are not"
+                " judged here."
+            )
         if self.amplitude * self.table.lift < 1:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
@@ -265,7 +299,8 @@ def on_shaker(
     restitution : float or list of (v, r)
         Restitution coefficient r of a free impact, above 0 and up to 1; or measured pairs of a
         closing speed in m/s and r, as a recording of contacts has them. The contact then has the
-        damping of the r of each closing speed; see :func:`.restitution_of`.
+        damping of the r of each closing speed. This r, also that of the restitution model, is that
+        of a fit (:func:`.restitution_of`), not that of the nearest pair.
     displacement, acceleration : float
         Give exactly one of the two. The displacement, in m, is its amplitude: half of the distance
         between the lowest and highest positions of the table. The acceleration, in m/s², is the
@@ -304,7 +339,8 @@ def on_shaker(
     ------
     ValueError
         If a quantity is missing or out of range. If the contact is so compliant that the
-        saddle-node or the period doubling is not found.
+        saddle-node or the period doubling is not found. If a measured r differs from the fit so
+        much that this difference changes the height by more than the tolerance.
 
     Examples
     --------
@@ -317,9 +353,10 @@ def on_shaker(
     fall = one_number("gravity", gravity)
     tolerance = one_number("tolerance", tolerance)
     n = whole_number("n", n)
-    measured = None
+    measured = fit = None
     if np.ndim(restitution):
-        measured = _measured(restitution, fall / rate, n)
+        fit = restitution_of(restitution)
+        measured = _measured(fit, restitution, fall / rate, n)
         if release == "force" and youngs_modulus is None:
             _check_measured(measured, fall / rate)
     else:
@@ -370,18 +407,42 @@ def on_shaker(
         def contacts(times: Values) -> Any:
             return spring.at(frequency_ratio=ratio * times)
 
-    return _answer(contacts, amplitude, n, tolerance, rate, fall, table)
+    answer = _answer(contacts, amplitude, n, tolerance, rate, fall, table)
+    return replace(answer, fit=_checked_fit(fit, answer, fall / rate)) if fit else answer
 
 
-def _measured(pairs: Values, unit: float, n: int) -> Callable:
+def _checked_fit(fit: RestitutionFit, answer: ShakerAnswer, unit: float) -> str:
+    """Sentence on a fit, whose speeds are in m/s.
+
+    Raises ValueError if its residual changes the height by more than the tolerance.
+    """
+    impact = free_impact(answer.ball, answer.n)
+    speed, r = float(impact.speed) * unit, float(impact.restitution)
+    worst = f"{fit.residual:.2g} at {fit.at:.3g} m/s"
+    near = np.clip([r - fit.residual, r, r + fit.residual], 0, 1)
+    around = free_impact(Rigid(near), answer.n)
+    heights = restitution_values(around, answer.amplitude, answer.table)["max_height"]
+    change = np.ptp(heights) / heights[1] if np.isfinite(heights).any() else 0.0
+    if not change <= answer.tolerance:
+        raise ValueError(
+            f"restitution: a fit to these pairs, r = {r:.3g} at the {speed:.3g} m/s of this orbit,"
+            f" misses a pair by {worst}, too much for a tolerance of {answer.tolerance:.3g} of the"
+            " height: give pairs nearer to this speed, or a number"
+        )
+    return (
+        f"r = {r:.4g} is that of a fit to the pairs, at the {speed:.3g} m/s of this orbit; the"
+        f" largest residual is {worst}."
+    )
+
+
+def _measured(fit: RestitutionFit, pairs: Values, unit: float, n: int) -> Callable:
     """r(u) of measured pairs, whose speeds are in m/s, if u is in this unit.
 
     Raises ValueError if the ball of the n-T orbit does not close at a measured speed.
     """
-    of_speed = restitution_of(pairs)
 
     def restitution(u: Values) -> Values:
-        return of_speed(u * unit)
+        return fit(u * unit)
 
     closing = float(free_impact(Rigid(restitution), n).speed) * unit
     low, high = np.min(pairs, axis=0)[0], np.max(pairs, axis=0)[0]
@@ -456,15 +517,31 @@ def _answer(
             f"the saddle-node or the period doubling is not found: a contact lasts"
             f" {duration / (2 * np.pi):.2g} periods of the table; give a shorter contact"
         )
-    push = table.instant(impact.line, off_rounding(impact, amplitude, table))[2]
+    scale = off_rounding(impact, amplitude, table)
+    phase, _, push, _ = table.instant(impact.line, scale)
+    models = (
+        OrbitEquations(Rigid(np.clip(impact.restitution, 0, 1)), 1, n, table=table),
+        OrbitEquations(ball, 1, n, table=table),
+    )
+    rows = (
+        np.array([phase, impact.speed, scale], float),
+        rows_of_orbits(models[1], np.array([amplitude]))[0],
+    )
+    orbits = [
+        model.orbit(row) if np.isfinite(row).all() else None
+        for model, row in zip(models, rows, strict=True)
+    ]
+    simple_obstacle, obstacle = (orbit.obstacle if orbit else "" for orbit in orbits)
     multiplier = (
         multipliers_of(*map(float, restitution_trace(impact, push)))[0],
-        _multiplier(OrbitEquations(ball, 1, n, table=table), amplitude),
+        orbits[1].multipliers[0] if orbits[1] else np.nan,
     )
-    longest = np.nan
-    # Heights are only compared where both orbits exist and are stable.
-    if np.all(np.abs(multiplier) <= 1 + NEUTRAL) and all(
-        values["saddle_node"] <= amplitude for values in (simple, exact)
+    longest, at_longest = np.nan, ""
+    # Heights are only compared where a ball stays on the orbits of both models.
+    if (
+        np.all(np.abs(multiplier) <= 1 + NEUTRAL)
+        and not (simple_obstacle or obstacle)
+        and all(values["saddle_node"] <= amplitude for values in (simple, exact))
     ):
         low = duration / np.pi
         threshold = error_thresholds(
@@ -478,8 +555,13 @@ def _answer(
             table=table,
         )["max_height"]
         longest = float(duration / threshold.ratio) / rate
+        if threshold.inadmissible:
+            at_longest = f"no ball follows the orbit ({threshold.inadmissible})"
+        elif threshold.unstable:
+            at_longest = f"the orbit is unstable {threshold.unstable}"
+    found = other_orbits(ball, n, float(amplitude), table, float(phase), float(impact.speed))
     unit = {"saddle_node": 1.0, "period_doubling": 1.0, "max_height": fall / rate**2}
-    compared = {
+    compared: dict[str, Any] = {
         name: ByModel(
             float(simple[name]) * unit[name],
             float(exact[name]) * unit[name],
@@ -498,11 +580,8 @@ def _answer(
         longest_contact=longest,
         multiplier=multiplier,
         table=table,
+        obstacle=(simple_obstacle, obstacle),
+        others=tuple((found[:, 1] * fall / rate).tolist()),
+        at_longest=at_longest,
         **compared,
     )
-
-
-def _multiplier(equations: OrbitEquations, amplitude: float) -> complex:
-    """Multiplier of the larger modulus of the n-T orbit of a ball; NaN if there is no orbit."""
-    row = rows_of_orbits(equations, np.array([amplitude]))[0]
-    return equations.orbit(row).multipliers[0] if np.isfinite(row).all() else np.nan

@@ -1,13 +1,14 @@
 """Follow orbits along a parameter, follow cascades, and find the limits of n-T orbits."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
 
 from bouncing_ball_beyond.contacts.balls import (
     Ball,
@@ -26,6 +27,7 @@ from bouncing_ball_beyond.periodic.equations import (
     PeriodicOrbit,
     alone,
 )
+from bouncing_ball_beyond.periodic.instants import closing_speeds, folds, others, where_begun
 from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.periodic.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.periodic.search import near_instants, rows_of, shortest_contacts
@@ -282,16 +284,22 @@ class Limits(Sequence):
     saddle_node, period_doubling : PeriodicOrbit, OrbitNotFound or SearchEnded
         Special orbit, or the reason why there is none.
     stable_ranges : tuple of (low, high)
-        Ranges of Λ in which orbits of the branch are stable, in their order on the branch. With a
-        constant r on a sine there is one range, from the saddle-node to the period doubling. If
-        faster impacts lose less energy, a range may end at a Neimark-Sacker bifurcation, or there
-        may be none. A range also ends where the branch ends, at Λ = 1e-6 or where it has turned
-        back and reaches twice the Λ at which it was entered.
+        Ranges of Λ in which orbits of the branch are stable and a ball follows them, in their order
+        on the branch. With a constant r above about 0.01 on a sine there is one range, from the
+        saddle-node to the period doubling. A range also ends where a flight grazes the table or a
+        contact its release, at a Neimark-Sacker bifurcation if faster impacts lose less energy, and
+        where the branch ends: at Λ = 1e-6 or where it has turned back and reaches twice the Λ at
+        which it was entered. There may be none.
+    others : array, shape (folds, 3)
+        Λ, τ and u at which n-T orbits of instantaneous impacts with the r(u) of the ball begin, if
+        they are not on the branch: those of other closing speeds, and those next to other rises of
+        the table. The orbits of contacts begin near them. :func:`.orbits` finds these orbits.
     """
 
     saddle_node: PeriodicOrbit | OrbitNotFound | SearchEnded
     period_doubling: PeriodicOrbit | OrbitNotFound | SearchEnded
     stable_ranges: tuple[tuple[float, float], ...] = ()
+    others: NDArray = field(default_factory=lambda: np.empty((0, 3)), compare=False)
 
     def __getitem__(self, i: Any) -> Any:
         return (self.saddle_node, self.period_doubling)[i]
@@ -300,16 +308,17 @@ class Limits(Sequence):
         return 2
 
     def __repr__(self) -> str:
-        places = [
-            f"{each.kind} at Λ = {each.amplitude:.10g}"
-            if isinstance(each, PeriodicOrbit)
-            else str(each)
-            for each in self
-        ]
+        places = [str(each) for each in self]
+        for i, each in enumerate(self):
+            if isinstance(each, PeriodicOrbit):
+                places[i] = f"{each.kind} at Λ = {each.amplitude:.10g}"
+                places[i] += f" ({each.obstacle})" if each.obstacle else ""
         known = {each.amplitude for each in self if isinstance(each, PeriodicOrbit)}
         if known and not (len(self.stable_ranges) == 1 and known <= {*self.stable_ranges[0]}):
             ranges = (f"from {low:.10g} to {high:.10g}" for low, high in self.stable_ranges)
             places.append(f"stable {' and '.join(ranges) or 'nowhere on this branch'}")
+        if len(self.others):
+            places.append(f"other n-T orbits begin {where_begun(self.others)}")
         return f"Limits: {'; '.join(places)}"
 
 
@@ -389,35 +398,70 @@ def limits_of(equations: OrbitEquations) -> list[Limits]:
         special = (*to_fold[::-1], *above.special)
         fold = _limit(special, "saddle-node", below.end)
         doubling = _limit(special, "period doubling", above.end)
-        if below.special == (fold,) and above.special == (doubling,):
-            # The start is in between, and nothing in between changes the stability.
-            whole = below.special[0].amplitude, above.special[0].amplitude
-            found.append(Limits(fold, doubling, (whole,) if start.stable else ()))
-        else:
-            found.append(Limits(fold, doubling, _stable_ranges(joined(below, above))))
+        branch = joined(below, above)
+        ranges = _stable_ranges(branch)
+        found.append(Limits(fold, doubling, ranges, _other_folds(start, branch)))
     return found
 
 
+def _other_folds(start: PeriodicOrbit, branch: FollowedBranch) -> NDArray:
+    """Saddle-nodes (Λ, τ, u) of instantaneous impacts, without those that a branch passes."""
+    speeds = closing_speeds(start.ball, start.periods)
+    found = folds(start.periods, start.table, speeds)
+    passed = [each for each in branch.special if each.kind == "saddle-node"]
+    for each in passed or [start]:
+        found = others(found, speeds, each.times[0], each.speeds[0])
+    return found[found[:, 0] > LOWEST]
+
+
 def _stable_ranges(branch: FollowedBranch) -> tuple[tuple[float, float], ...]:
-    """Ranges of the parameter in which the orbits of a branch are stable."""
-    path = branch.with_special()
+    """Ranges of the parameter in which the orbits of a branch are stable and a ball follows them.
+
+    Between special orbits that change the stability, the middle orbit decides on it.
+    """
+    path = branch.refined().with_special()
     special = [i for i, each in enumerate(path) if each.kind in CHANGES]
     ranges = []
     for first, last in pairwise([0, *special, len(path) - 1]):
         ends = np.array([path[first].z, path[last].z])
         if np.array_equal(*ends):
             continue
-        inner = path[first + 1 : last]
-        if inner:
-            middle = inner[len(inner) // 2]
-        else:
-            normal = np.diff(ends, axis=0) / branch.equations.scales(ends[:1]) ** 2
-            guess = ends.mean(axis=0, keepdims=True)
-            middle = branch.equations.orbit(newton(branch.equations, guess, normal).z[0])
-        if middle.stable:
-            low, high = sorted(float(each) for each in ends[:, -1])
-            ranges.append((low, high))
+        z = np.array([each.z for each in path[first : last + 1]])
+        if len(z) == 2:
+            middle = _between(branch.equations, z[[0]], z[[1]], 0.5)
+            z = np.insert(z, 1, middle, axis=0)
+        if branch.equations.orbit(z[len(z) // 2]).stable:
+            ranges += _followed(branch.equations, z)
     return tuple(ranges)
+
+
+def _between(equations: OrbitEquations, start: NDArray, end: NDArray, share: float) -> NDArray:
+    """Orbit at a share of the step between two orbits, shape (1, N)."""
+    chord = end - start
+    return newton(equations, start + share * chord, chord / equations.scales(start) ** 2).z
+
+
+def _followed(equations: OrbitEquations, z: NDArray) -> list[tuple[float, float]]:
+    """Ranges of the parameter in which a ball follows the orbits between two special orbits.
+
+    The special orbits, in the first and the last row, count as their neighbours.
+    """
+    inner = equations.admissible(z[1:-1])
+    followed = np.concatenate([inner[:1], inner, inner[-1:]])
+    ends = [z[0, -1]]
+    for i in np.flatnonzero(followed[1:] != followed[:-1]).tolist():
+
+        def margin(share: float, i: int = i) -> float:
+            here = _between(equations, z[[i]], z[[i + 1]], share)
+            return float(min(equations.clearance(here)[0], equations.contact_clearance(here)[0]))
+
+        # If the margins have one sign, the range ends at the last orbit that a ball follows.
+        share = float(followed[i + 1])
+        if margin(0.0) * margin(1.0) < 0:
+            share = brentq(margin, 0.0, 1.0, xtol=1e-12)
+        ends.append(_between(equations, z[[i]], z[[i + 1]], share)[0, -1])
+    pieces = list(pairwise([*ends, z[-1, -1]]))[0 if followed[0] else 1 :: 2]
+    return [(float(min(piece)), float(max(piece))) for piece in pieces]
 
 
 CHANGES = {"saddle-node", "period doubling", "Neimark-Sacker"}

@@ -17,9 +17,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.contacts.balls import Ball, H, Impact
+from bouncing_ball_beyond.contacts.balls import Ball, H, Impact, Rigid
 from bouncing_ball_beyond.motions.effort import Effort, SearchEnded
 from bouncing_ball_beyond.periodic.chains import product_of, solve_bordered, solved_or_nan
+from bouncing_ball_beyond.periodic.instants import (
+    closing_speeds,
+    instants,
+    named,
+    others,
+    same_side,
+)
 from bouncing_ball_beyond.periodic.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables.table import FUNDAMENTAL, SINE, Table
 
@@ -37,6 +44,17 @@ has errors of 1e-12, which are small enough for tangents of curves.
 
 NEUTRAL = 1e-9
 """Modulus of 1 - det below which det counts as 1: that of an elastic ball is 1 within rounding."""
+
+AT_FOLD = 1e-6
+"""Limit of |1 - tr/(1 + det)| below which an orbit counts as the saddle-node.
+
+Such an orbit belongs to both sides of the saddle-node.
+
+1 - tr/(1 + det) grows with the square root of the distance in Λ. Errors of 1e-13 in a contact
+therefore cause a value of 3e-7.
+
+At half: 1005 of 1020 orbits next to saddle-nodes are found, instead of 1011. At twice: 1015.
+"""
 
 LASTING = 4 * np.pi
 """T of two free oscillations. Above this T, step lengths count relative changes of T.
@@ -700,6 +718,7 @@ class PeriodicOrbit:
             # Rounding errors would decide on the stability of a special orbit.
             **({} if self.kind else {"stable": self.stable}),
             "admissible": self.admissible or f"no, {self.obstacle}",
+            **({} if self.kind or not len(self.others) else {"others": named(self.others)}),
         }
         width = max(map(len, rows))
         return "\n".join(
@@ -888,6 +907,34 @@ class PeriodicOrbit:
     def obstacle(self) -> str:
         """Why no ball follows the orbit, such as "a flight passes below the table"; or ""."""
         return str(self.equations.obstacles(self.z[np.newaxis], self._linear)[0])
+
+    @cached_property
+    def others(self) -> NDArray:
+        """τ and u of other n-T orbits on this side of their saddle-nodes, shape (orbits, 2).
+
+        They are orbits of instantaneous impacts with the r(u) of the ball, at the same Λ: those of
+        other closing speeds, and those next to another rise of the table. Orbits of contacts are
+        near them; `orbits` finds these. Empty for orbits with several impacts.
+        """
+        if self.impacts > 1:
+            return np.empty((0, 2))
+        side = 1 if self.turn < 1 + AT_FOLD else -1
+        here = self.ball, self.periods, self.amplitude, self.table
+        return other_orbits(*here, self.times[0], self.speeds[0], side)
+
+
+def other_orbits(
+    ball: Ball, n: int, amplitude: float, table: Table, tau: float, u: float, side: int = 1
+) -> NDArray:
+    """τ and u of other n-T orbits than that of an impact; see :attr:`PeriodicOrbit.others`."""
+    speeds = closing_speeds(ball, n)
+    found = same_side(instants(ball, n, amplitude, table, speeds), ball, table, side)
+    found = others(found, speeds, tau, u)
+    if not len(found):
+        return found
+    simple = Rigid(np.clip(ball.signature(found[:, 1]).restitution, 0, 1))
+    equations = OrbitEquations(simple, 1, n, table=table)
+    return found[equations.admissible(np.insert(found, 2, amplitude, axis=1))]
 
 
 def _short(value: Any) -> str:

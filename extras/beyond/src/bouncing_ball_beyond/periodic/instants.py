@@ -42,40 +42,63 @@ def around(function: Any, size: float) -> NDArray:
     return np.unique(np.where(PERIOD - found < 1e-12, 0.0, found))
 
 
-def instants(ball: Ball, n: int, amplitude: float, table: Table) -> NDArray:
-    """Find the τ and u of all n-T orbits with the r(u) of a ball, shape (orbits, 2)."""
+def instants(
+    ball: Ball, n: int, amplitude: float, table: Table, speeds: NDArray | None = None
+) -> NDArray:
+    """Find the τ and u of all n-T orbits with the r(u) of a ball, shape (orbits, 2).
+
+    The closing ``speeds`` may be given, if they are known.
+    """
     size = amplitude * table.bounds[1]
     found = [
         (tau, u)
-        for u in closing_speeds(ball, n)
+        for u in (closing_speeds(ball, n) if speeds is None else speeds)
         for tau in around(lambda tau, u=u: amplitude * table(tau, 1) - (u - n * np.pi), size)
     ]
     return np.reshape(found, (-1, 2))
 
 
-def folds(ball: Ball, n: int, table: Table) -> NDArray:
-    """Find the Λ, τ and u of all saddle-nodes of n-T orbits with the r(u), shape (folds, 3).
+def folds(n: int, table: Table, speeds: NDArray) -> NDArray:
+    """Find the Λ, τ and u of the saddle-nodes of n-T orbits that close at ``speeds``.
 
-    There is one for each closing speed and each phase at which the rate of the table is largest.
+    Returns an array of the shape (folds, 3).
+
+    There is one for each speed and each phase at which the rate of the table is largest.
     """
     rises = around(lambda tau: table(tau, 2), table.bounds[2])
     rises = rises[(table(rises, 1) > 0) & (table(rises, 3) < 0)]
-    found = [
-        ((u - n * np.pi) / table(tau, 1), tau, u) for u in closing_speeds(ball, n) for tau in rises
-    ]
+    found = [((u - n * np.pi) / table(tau, 1), tau, u) for u in speeds for tau in rises]
     return np.reshape(found, (-1, 3))
 
 
-def not_near(found: NDArray, tau: float, u: float) -> NDArray:
-    """Leave out the row (..., τ, u) of an array that is nearest to an impact."""
-    apart = np.abs((found[:, -2] - tau + np.pi) % PERIOD - np.pi) + np.abs(found[:, -1] - u)
-    return found[np.arange(len(found)) != np.argmin(apart)] if len(found) else found
+def others(found: NDArray, speeds: NDArray, tau: float, u: float) -> NDArray:
+    """Leave out the row (..., τ, u) to which an impact belongs, if there is one.
 
-
-def same_side(found: NDArray, ball: Ball, table: Table, turn: float) -> NDArray:
-    """Select the rows (τ, u) on one side of their saddle-node: that with this tr/(1 + det)."""
-    tau, u = found.T
-    if not len(u):
+    The impact belongs to the nearest of the closing ``speeds``, and to the nearest phase.
+    """
+    if not len(found):
         return found
-    r = ball.signature(u + 1j * H).restitution * (u + 1j * H)
-    return found[np.sign(-table(tau, 2) * (1 + r.imag / H)) == np.sign(1 - turn)]
+    own = speeds[np.argmin(np.abs(speeds - u))]
+    apart = np.abs((found[:, -2] - tau + np.pi) % PERIOD - np.pi)
+    apart = np.where(found[:, -1] == own, apart, np.inf)
+    return found[(np.arange(len(found)) != np.argmin(apart)) | np.isinf(apart)]
+
+
+def same_side(found: NDArray, ball: Ball, table: Table, side: int) -> NDArray:
+    """Select the rows (τ, u) where 1 - tr/(1 + det) has the sign ``side``."""
+    tau, u = found.T + 1j * H * np.array([[0.0], [1.0]])
+    slope = np.imag((1 + ball.signature(u).restitution) * u) / H if u.size else u.real
+    return found[np.sign(-table(tau.real, 2) * slope) == side]
+
+
+def named(found: NDArray) -> str:
+    """Text of orbits (τ, u): the phase and the closing speed of each, but of four at most."""
+    texts = [f"u = {u:.6g} at phase {np.pi - (np.pi - tau) % PERIOD:.6g}" for tau, u in found[:4]]
+    return "; ".join([*texts, *(["…"] if len(found) > 4 else [])])
+
+
+def where_begun(found: NDArray) -> str:
+    """Text of saddle-nodes (Λ, τ, u): where other orbits begin, but of four at most."""
+    found = found[np.argsort(found[:, 0])]
+    texts = [f"near Λ = {amplitude:.6g} with u = {u:.6g}" for amplitude, _, u in found[:4]]
+    return ", ".join([*texts, *(["…"] if len(found) > 4 else [])])

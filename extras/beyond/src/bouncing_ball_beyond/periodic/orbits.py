@@ -27,6 +27,7 @@ from bouncing_ball_beyond.periodic.equations import (
     PeriodicOrbit,
     alone,
 )
+from bouncing_ball_beyond.periodic.instants import where_begun
 from bouncing_ball_beyond.periodic.search import (
     all_orbits,
     near_instants,
@@ -74,7 +75,8 @@ def orbit(
         One orbit if all arguments are numbers. If arguments are arrays, a list with one entry for
         each element of the broadcast arrays. The entry is an orbit, an OrbitNotFound if the orbit
         does not exist, or a SearchEnded if its evaluations are used up. If no ball follows an
-        orbit, ``admissible`` of the orbit is False.
+        orbit, ``admissible`` of the orbit is False, and ``obstacle`` says why. If r depends on the
+        speed, or the table rises several times, ``others`` of the orbit names other n-T orbits.
 
     Raises
     ------
@@ -132,11 +134,12 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     rows = equations.rows(ending)
     lowest = limits_of(rows) if len(ending) else []
     folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
+    others = {i: each.others for i, each in zip(ending, lowest, strict=True)}
     for i in missing:
         fold = folds.get(i)
         why = "none is found on this side of the saddle-node"
         if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
-            why = f"below the saddle-node at Λ = {fold.amplitude:.10g}"
+            why = f"below the saddle-node at Λ = {fold.amplitude:.10g}{_of_others(others[i])}"
         elif near[i] or found[i]:
             found[i] = near[i] or found[i]
             continue
@@ -149,6 +152,11 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
             f" {type(ball).__name__}({values}): {why}"
         )
     return found
+
+
+def _of_others(folds: NDArray) -> str:
+    """Text on other saddle-nodes (Λ, τ, u), above which no orbit was found."""
+    return f"; no other that begins {where_begun(folds)}, either" if len(folds) else ""
 
 
 def orbits(

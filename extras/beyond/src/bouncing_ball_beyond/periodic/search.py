@@ -13,21 +13,10 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from bouncing_ball_beyond.contacts.balls import Ball, Rigid, broadcast_named, check_ball
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
 from bouncing_ball_beyond.motions.effort import Effort, SearchEnded
-from bouncing_ball_beyond.periodic.equations import OrbitEquations, PeriodicOrbit, flight
+from bouncing_ball_beyond.periodic.equations import AT_FOLD, OrbitEquations, PeriodicOrbit, flight
 from bouncing_ball_beyond.periodic.instants import instants
 from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.tables.table import SINE, Table
-
-AT_FOLD = 1e-6
-"""Limit of |1 - tr/(1 + det)| below which an orbit counts as the saddle-node.
-
-Such an orbit belongs to both sides of the saddle-node.
-
-1 - tr/(1 + det) grows with the square root of the distance in Λ. Errors of 1e-13 in a contact
-therefore cause a value of 3e-7.
-
-At half: 1005 of 1020 orbits next to saddle-nodes are found, instead of 1011. At twice: 1015.
-"""
 
 
 def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
@@ -47,7 +36,12 @@ def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple
 
 
 def guess_of_instants(
-    ball: Ball, periods: int | NDArray, amplitude: NDArray, side: int = 1, table: Table = SINE
+    ball: Ball,
+    periods: int | NDArray,
+    amplitude: NDArray,
+    side: int = 1,
+    table: Table = SINE,
+    start: NDArray | None = None,
 ) -> NDArray:
     """Guess n-T orbits from the corrected model, which replaces contacts by instantaneous impacts.
 
@@ -57,9 +51,10 @@ def guess_of_instants(
     1, orbits are on the stable side of the saddle-node. If ``side`` is -1, they are on the unstable
     side.
 
-    ``amplitude`` has the shape (rows,). Returns rows z, shape (rows, N).
+    ``amplitude`` has the shape (rows,). The search for u starts at 1.2 πn, or at ``start``. Returns
+    rows z, shape (rows, N).
     """
-    u = np.full(amplitude.shape, 1.2 * np.pi) * periods
+    u = np.full(amplitude.shape, 1.2 * np.pi) * periods if start is None else np.array(start)
     psi = np.full(amplitude.shape, table.phase_of_slope(table.slope / 2, side))
     step, before = np.zeros((2, *amplitude.shape))
     at: Any = np.inf

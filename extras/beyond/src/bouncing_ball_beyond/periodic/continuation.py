@@ -22,6 +22,7 @@ from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort, SearchEnded
 from bouncing_ball_beyond.periodic.branches import FollowedBranch, followed, joined
 from bouncing_ball_beyond.periodic.equations import (
     KINDS,
+    LASTING,
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
@@ -417,9 +418,11 @@ def _other_folds(start: PeriodicOrbit, branch: FollowedBranch) -> NDArray:
 def _stable_ranges(branch: FollowedBranch) -> tuple[tuple[float, float], ...]:
     """Ranges of the parameter in which the orbits of a branch are stable and a ball follows them.
 
-    Between special orbits that change the stability, the middle orbit decides on it.
+    Between special orbits that change the stability, the middle orbit decides on it. Of contacts
+    that last long, which take longest, only the orbits of the branch are asked.
     """
-    path = branch.refined().with_special()
+    T = branch.equations.split(branch.z)[0][..., 2:]
+    path = (branch if T.max(initial=0.0) > LASTING else branch.refined()).with_special()
     special = [i for i, each in enumerate(path) if each.kind in CHANGES]
     ranges = []
     for first, last in pairwise([0, *special, len(path) - 1]):

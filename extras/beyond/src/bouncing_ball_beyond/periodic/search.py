@@ -143,14 +143,15 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
 def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Find orbits of one ball, shape (orbits, N), including those that the ball does not follow."""
     if equations.impacts > 1:
-        z = _motions(equations, amplitude)
+        guesses = [_motions(equations, amplitude)]
     elif isinstance(equations.ball, Rigid) and callable(equations.ball.restitution):
         z = instants(equations.ball, int(equations.periods), amplitude, equations.table)
         return np.column_stack([z, np.full(len(z), amplitude)])
     else:
-        z = np.concatenate([_returns(equations, amplitude), _near_instants(equations, amplitude)])
-    equations.spend(0, f"orbits near {len(z)} of these motions")
-    z = _solutions_near(equations, z[np.isfinite(z).all(axis=1)])
+        guesses = [_returns(equations, amplitude), _near_instants(equations, amplitude)]
+    guesses = [z[np.isfinite(z).all(axis=1)] for z in guesses]
+    equations.spend(0, f"orbits near {sum(map(len, guesses))} of these motions")
+    z = np.concatenate([_solutions_near(equations, z) for z in guesses])
     x = equations.split(z)[0]
     z = z[(x[..., 2:] >= 0).all(axis=(1, 2)) & (x[..., 1] > 0).all(axis=1)]
     z = z[(equations.ends(z).flight > 0).all(axis=1)]

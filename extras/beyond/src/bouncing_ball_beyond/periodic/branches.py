@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from bouncing_ball_beyond.periodic.equations import (
+    CHANGES,
     KINDS,
     OrbitEquations,
     OrbitNotFound,
@@ -55,7 +56,9 @@ class FollowedBranch:
         first, last = self.values[[0, -1]]
         kind = self.equations.kind
         name = type(self).__name__ + (kind and f": {kind}")
-        kinds = ", ".join(f"{each.kind} at {each.z[-1]:.8g}" for each in self.special)
+        kinds = ", ".join(
+            f"{each.kind} at {each.z[-1]:.8g}{_unfollowed(each)}" for each in self.special
+        )
         rows = {
             "orbits": len(self),
             "impacts": self.impacts,
@@ -195,6 +198,12 @@ class SpecialCurve(FollowedBranch):
     def kind(self) -> str:
         """Kind of the special orbits."""
         return self.equations.kind
+
+
+def _unfollowed(special: PeriodicOrbit) -> str:
+    """Text on a special orbit that no ball follows; rounding would decide on one that grazes."""
+    decided = special.kind in CHANGES and special.obstacle
+    return f" ({special.obstacle})" if decided else ""
 
 
 def _plain(kind: object) -> str:

@@ -21,6 +21,7 @@ from bouncing_ball_beyond.contacts.balls import (
 from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort, SearchEnded
 from bouncing_ball_beyond.periodic.branches import FollowedBranch, followed, joined
 from bouncing_ball_beyond.periodic.equations import (
+    CHANGES,
     KINDS,
     LASTING,
     OrbitEquations,
@@ -465,10 +466,6 @@ def _followed(equations: OrbitEquations, z: NDArray) -> list[tuple[float, float]
         ends.append(_between(equations, z[[i]], z[[i + 1]], share)[0, -1])
     pieces = list(pairwise([*ends, z[-1, -1]]))[0 if followed[0] else 1 :: 2]
     return [(float(min(piece)), float(max(piece))) for piece in pieces]
-
-
-CHANGES = {"saddle-node", "period doubling", "Neimark-Sacker"}
-"""Kinds of special orbits at which the stability changes."""
 
 
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:

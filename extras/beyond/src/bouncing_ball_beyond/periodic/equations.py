@@ -560,11 +560,11 @@ class OrbitEquations:
         leaving = (release > 0) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
         obstacles = {
+            "a contact or a flight would end before it begins": lasting.all(axis=-1),
             "a contact ends earlier": self.contact_clearance(z) > 0,
             "a flight passes below the table": self.clearance(z, ends) > 0,
             "the ball does not leave the table as a contact ends": leaving,
             "the ball does not land": landing.all(axis=-1),
-            "a flight has no duration": lasting.all(axis=-1),
         }
         return np.select([~clear for clear in obstacles.values()], [*obstacles], "")
 
@@ -991,6 +991,9 @@ SINGULAR = slice(3, 6)
 
 There are no orbits beyond special orbits of these kinds.
 """
+
+CHANGES = {"saddle-node", "period doubling", "Neimark-Sacker"}
+"""Kinds of special orbits at which the stability changes."""
 
 MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
 """Multiplier at special orbits, by kind."""

@@ -155,6 +155,9 @@ class NormalForm:
         Unit vector of ξ in (τ, δ′) of the first impact. It is complex for a pair.
     other : float or complex
         The other multiplier.
+    obstacle : str
+        Why no ball follows the special orbit, and then none the orbits beside it; "" if a ball
+        does.
     """
 
     kind: str
@@ -164,6 +167,7 @@ class NormalForm:
     along: str
     direction: tuple[complex, complex]
     other: complex
+    obstacle: str = ""
 
     @property
     def supercritical(self) -> bool:
@@ -269,6 +273,7 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
         along=equations.along[0].name,
         direction=tuple((v[:2] * [1, -1]).tolist()),
         other=orbit.trace_and_determinant[1] / multiplier,
+        obstacle=orbit.obstacle,
     )
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import xarray as xr
 import yaml
-from docutils.nodes import SkipNode
+from docutils.nodes import SkipNode, make_id
 from docutils.utils.math.latex2mathml import tex2mathml
 
 import bouncing_ball_beyond
@@ -160,6 +160,11 @@ def mathml(as_block):
     return write, None
 
 
+def anchored(heading):
+    """A heading of a page that replaces one of Sphinx, with the anchor of Sphinx's links to it."""
+    return f'{heading[1]}<a id="{make_id(re.sub("<.*?>", "", heading[2]))}"></a>{heading[2]}'
+
+
 def home(app, failure):
     """The front page and the article are the results of the replication, with their data."""
     folder = Path(app.outdir)
@@ -171,6 +176,7 @@ def home(app, failure):
     for name in (name for name in texts if name.endswith(".html")):
         # The tables in Markdown are pages of the site.
         page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', texts[name])
+        page = re.sub(r'(<h\d id="section-[^"]*">)(.*?)(?=</h)', anchored, page)
         (folder / name).write_text(page, encoding="utf-8")
     (folder / "figures").mkdir(exist_ok=True)
     for path in (ROOT / "figures").iterdir():

@@ -216,7 +216,7 @@ def test_orbits_tend_to_the_restitution_model_to_first_order_in_the_stiffness():
         "saddle_node": -load / x,
     }
     ratios = np.array([2e4, 4e4])
-    y = continuation.stable_orbits(n, r, amplitude, ratios)[:, 0]
+    y = continuation.upper_orbits(n, r, amplitude, ratios)[:, 0]
     observed = Family(n, Contact(ratios, zeta)).observables(y, OBSERVABLES)
     observed["saddle_node"] = continuation.bifurcations(n, "saddle-node", Contact(ratios, zeta))[
         0, 0
@@ -241,7 +241,7 @@ def test_a_walk_along_the_frequency_ratio_follows_the_stable_orbits(release):
     r = np.array([smallest, 0.65, 0.85, 0.999])
     amplitude = 1.01 * restitution.saddle_node(2, r) + np.array([0.4, 0.4, 0.8, 0.5])
     ratios = np.array([1.9, 2.0, 3.33, 50.0, 1e3, 1e6])
-    found = continuation.stable_orbits(2, r, amplitude, ratios, release)
+    found = continuation.upper_orbits(2, r, amplitude, ratios, release)
     assert found.shape == (4, 4, 6)
     np.testing.assert_allclose(found[0], np.outer(amplitude, np.ones(6)), rtol=CORRECTOR)
     for i in range(4):
@@ -256,7 +256,7 @@ def test_a_walk_along_the_frequency_ratio_follows_the_stable_orbits(release):
 def test_where_there_is_no_orbit_there_is_none():
     # The saddle-node of the 5-T orbits rises again on compliant contacts.
     ratios = np.array([1.0, 1.05, 3.0, 100.0])
-    y = continuation.stable_orbits(5, 0.65, 3.5, ratios)[0, 0]
+    y = continuation.upper_orbits(5, 0.65, 3.5, ratios)[0, 0]
     zeta = independent.restitution_to_damping(0.65)
     durations = np.linspace(2, 4.5, 400) / ratios[:, np.newaxis]
     lowest = [
@@ -270,24 +270,24 @@ def test_where_there_is_no_orbit_there_is_none():
 
 
 def test_below_the_saddle_node_of_the_restitution_model_there_is_no_orbit():
-    found = continuation.stable_orbits(1, 0.85, [0.3, 0.25], [10.0])
+    found = continuation.upper_orbits(1, 0.85, [0.3, 0.25], [10.0])
     assert np.isfinite(found[:, 0]).all()
     assert np.isnan(found[:, 1]).all()
     message = r"1-T orbits on stiff contacts need Λ >= 0.254724 \(Eq. 7 .* r = 0.85\).* Λ is 0.25: "
     with pytest.raises(NoOrbit, match=message):
-        continuation.stable_orbits(1, 0.85, [0.2, 0.25], [10.0])
+        continuation.upper_orbits(1, 0.85, [0.2, 0.25], [10.0])
 
 
 def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():
     zeta = independent.restitution_to_damping(0.15, "force")
     assert zeta > 1.7 * damping_ratio(0.15)
     lowest = restitution.saddle_node(1, 0.15)
-    y = continuation.stable_orbits(1, 0.15, 1.01 * lowest, [1e3, 1e6], "force")[:, 0]
+    y = continuation.upper_orbits(1, 0.15, 1.01 * lowest, [1e3, 1e6], "force")[:, 0]
     for j, ratio in enumerate([1e3, 1e6]):
         assert_on_closed_form(1, ratio, zeta, "force", y[:, j])
     with pytest.raises(NoOrbit):
-        continuation.stable_orbits(1, 0.15, 0.99 * lowest, [1e3], "force")
-    some = continuation.stable_orbits(1, [0.05, 0.15], 1.01 * lowest, [1e3], "force")
+        continuation.upper_orbits(1, 0.15, 0.99 * lowest, [1e3], "force")
+    some = continuation.upper_orbits(1, [0.05, 0.15], 1.01 * lowest, [1e3], "force")
     np.testing.assert_array_equal(np.isnan(some[0, :, 0]), [True, False])
 
 
@@ -303,7 +303,7 @@ def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():
 def test_a_walk_ends_where_its_orbits_cease(n, r, release, amplitude):
     ratios = np.geomspace(0.4, 100, 60)
     contact = Contact.of_restitution(ratios, r, release)
-    walks = [continuation.stable_orbits(n, r, amplitude, ratios, release)[:, 0]]
+    walks = [continuation.upper_orbits(n, r, amplitude, ratios, release)[:, 0]]
     for kind in continuation.SPECIAL[:2]:
         walks.append(continuation.bifurcations(n, kind, contact)[:, 0])
     for y in walks:
@@ -318,7 +318,7 @@ def test_a_walk_ends_where_its_orbits_cease(n, r, release, amplitude):
 
 def test_the_tangent_turns_by_at_most_14_degrees_in_a_step():
     family = Family(1, Contact.of_restitution(2.0, 0.85))
-    start = continuation.stable_orbits(1, 0.85, 1.3, 2.0)[:, 0, 0]
+    start = continuation.upper_orbits(1, 0.85, 1.3, 2.0)[:, 0, 0]
     path, _ = continuation._follow(family, start, 1.3, largest_step=5.0)
     _, _, vectors = np.linalg.svd(np.moveaxis(family.jacobian(path), -1, 0))
     tangents = vectors[:, -1]

@@ -27,7 +27,7 @@ RIGHT = {
     "kind": "saddle-node",
     "contact": Contact(SCAN, spring_damper.damping_ratio(0.65)),
     "quantities": ["max_height", "saddle_node", "permanent_contact"],
-    "orbits": continuation.stable_orbits(1, 0.65, 1.0, SCAN)[:, 0],
+    "orbits": continuation.upper_orbits(1, 0.65, 1.0, SCAN)[:, 0],
 }
 RIGHT |= {"family": orbits.Family(1, RIGHT["contact"]), "y": RIGHT["orbits"]}
 RIGHT |= {"points": 21, "largest_step": 0.2, "amplitude_max": 1.2, "tolerance": 0.05}
@@ -73,7 +73,7 @@ SEARCHED = {
 }
 """Values that closed forms return as NaN or as a limit, and for which no orbit can be found."""
 SEARCHES = (
-    *("stable_orbits", "branch", "errors", "orbits_along"),
+    *("upper_orbits", "stable_orbits", "branch", "errors", "orbits_along"),
     *("bifurcation_errors", "lowest_period_doublings"),
 )
 

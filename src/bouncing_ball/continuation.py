@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball import restitution
 from bouncing_ball.orbits import Family, NoOrbit
-from bouncing_ball.restitution import Numbers, finite, required
+from bouncing_ball.restitution import Numbers, finite, is_stable, required
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, free_duration
 
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
@@ -245,14 +245,16 @@ def _at_ratio(family: Family, ratio: Numbers) -> Family:
     return replace(family, contact=replace(family.contact, frequency_ratio=ratio))
 
 
-def stable_orbits(
+def upper_orbits(
     n: int,
     r: Numbers,
     amplitude: Numbers,
     ratios: Numbers,
     release: str = "displacement",
 ) -> NDArray:
-    """Orbits on the stable side of the saddle-node, at given amplitudes, along ϖ.
+    """Orbits that are stable next to the saddle-node, at given amplitudes, along ϖ.
+
+    At a larger amplitude they may have lost their stability (`stable_orbits`).
 
     Parameters
     ----------
@@ -278,16 +280,41 @@ def stable_orbits(
         free impact). The search does not find orbits that exist on compliant
         contacts only.
 
-    >>> stable_orbits(1, 0.65, [0.9, 1.0], [10.0, 100.0]).shape
+    >>> upper_orbits(1, 0.65, [0.9, 1.0], [10.0, 100.0]).shape
     (4, 2, 2)
     """
+    family, amplitude = _families(n, r, amplitude, ratios, release)
+    return _upper_orbits(family, amplitude)
+
+
+def stable_orbits(
+    n: int,
+    r: Numbers,
+    amplitude: Numbers,
+    ratios: Numbers,
+    release: str = "displacement",
+) -> NDArray:
+    """Stable orbits at given amplitudes, along ϖ: `upper_orbits`, NaN where they are unstable.
+
+    >>> stable_orbits(1, 0.65, [1.0, 1.5], [100.0])[0, :, 0].tolist()
+    [1.0, nan]
+    """
+    family, amplitude = _families(n, r, amplitude, ratios, release)
+    y = _upper_orbits(family, amplitude)
+    return np.where(is_stable(*family.trace_and_determinant(y)), y, np.nan)
+
+
+def _families(
+    n: int, r: Numbers, amplitude: Numbers, ratios: Numbers, release: str
+) -> tuple[Family, NDArray]:
+    """Family of contacts with the restitution coefficients r, and amplitudes, shape (cases, 1)."""
     r, amplitude = np.broadcast_arrays(np.atleast_1d(finite("r", r)), np.atleast_1d(amplitude))
     contact = Contact.of_restitution(np.atleast_1d(ratios), r[:, np.newaxis], release)
-    return _upper_orbits(Family(n, contact), amplitude[:, np.newaxis])
+    return Family(n, contact), amplitude[:, np.newaxis]
 
 
 def _upper_orbits(family: Family, amplitude: NDArray) -> NDArray:
-    """Orbits as in `stable_orbits`, for a family and amplitudes of the shape (cases, 1)."""
+    """Orbits as in `upper_orbits`, for a family and amplitudes of the shape (cases, 1)."""
     finite("Λ", amplitude)
     r = family.contact.restitution
     if np.isnan(r).all():

@@ -27,7 +27,7 @@ from bouncing_ball.continuation import (
     walk,
 )
 from bouncing_ball.orbits import Family, NoOrbit, contact_of_ball
-from bouncing_ball.restitution import Numbers, ascending, finite, is_stable, required
+from bouncing_ball.restitution import Numbers, ascending, finite, required
 from bouncing_ball.spring_damper import Contact, permanent_contact
 
 OF_ORBITS = ("max_height", "bounce_velocity", "phase_in_periods", "apparent_restitution")
@@ -188,7 +188,7 @@ def orbit_errors(
         "apparent_restitution": (Family.apparent_restitution, r, r),
     }
     condition = at_amplitude(finite("Λ", amplitude))
-    admissible = family.clearance(orbits) > 0
+    admissible = family.admissible(orbits)
     return {
         name: _along(family, orbits, condition, admissible, *quantities[name]) for name in names
     }
@@ -211,7 +211,7 @@ def bifurcation_errors(
     for name in names:
         kind, test, limit = kinds[name]
         orbits = bifurcations(n, kind, family.contact)[:, 0]
-        admissible = family.clearance(orbits) > 0
+        admissible = family.admissible(orbits)
         found[name] = _along(
             family, orbits, at_bifurcation(test), admissible, lambda family, y: y[0], limit, limit
         )
@@ -307,8 +307,7 @@ def errors(
         orbits = np.full((4, ratios.size), np.nan)
         if ends[0] < amplitude < ends[1]:
             orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-        stable = is_stable(*family.trace_and_determinant(orbits))
-        if not stable.any():
+        if np.isnan(orbits).all():
             stiffest = replace(contact, frequency_ratio=np.max(ratios))
             low, high = (bifurcations(n, kind, stiffest)[0].item() for kind in SPECIAL[:2])
             of_contact = f"; those with ϖ = {np.max(ratios):g} need {low:.6g} to {high:.6g}"
@@ -316,7 +315,7 @@ def errors(
                 f"Λ = {amplitude:.6g}: stable {n}-T orbits of the restitution model need Λ from "
                 f"{ends[0]:.6g} to {ends[1]:.6g} (Eqs. 7 and R1){of_contact * (low < high)}"
             )
-        known = orbit_errors(family, np.where(stable, orbits, np.nan), r, amplitude, of_orbits)
+        known = orbit_errors(family, orbits, r, amplitude, of_orbits)
     of_bifurcations = [name for name in names if name in OF_BIFURCATIONS]
     known |= bifurcation_errors(n, r, ratios, release, of_bifurcations)
     if "permanent_contact" in names:
@@ -347,7 +346,9 @@ def errors_of_orbits(family: Family, y: NDArray, r: Numbers, amplitude: Numbers)
 
 
 def orbits_along(family: Family, amplitude: NDArray) -> NDArray:
-    """Stable orbits at amplitudes of the shape (orbits, 1), along the ϖ of the family's contact.
+    """Orbits at amplitudes of the shape (orbits, 1), along the ϖ of the family's contact.
+
+    They are stable next to the saddle-node, as `continuation.upper_orbits`.
 
     The amplitude may equal the saddle-node of the restitution model (Eq. 7). The saddle-node of a
     stiff contact is at a lower amplitude; the relative difference is of the order of 1/ϖ. At the

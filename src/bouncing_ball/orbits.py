@@ -18,8 +18,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball.restitution import Numbers, is_stable, periods, required
+from bouncing_ball.restitution import MARGIN, Numbers, is_stable, periods, required
 from bouncing_ball.spring_damper import NO_CONTACT, Contact
+
+
+RINGING = 15
+"""Decay rates ζθ after which a contact no longer rings, and its samples may be far apart."""
+
+MOST_SAMPLES = 2000
+"""Maximum number of samples, two in a radian of θ, while a contact rings."""
 
 
 class NoOrbit(ValueError):
@@ -393,9 +400,53 @@ class Family:
             return np.maximum(gap, free) / (part * (1 - part))
 
         shape = np.shape(end.velocity)
-        samples = 32 * int(np.max(self.n)) + 1
-        inside = np.minimum(_least(in_contact, shape), _least(in_flight, shape, samples))
+        flight_samples = _places(32 * int(np.max(self.n)) + 1)
+        inside = np.minimum(
+            _least(in_contact, shape, self._contact_samples(y[3], shape)),
+            _least(in_flight, shape, flight_samples),
+        )
         return np.minimum(inside, np.minimum(-u, end.gap_velocity + lag * end.gap_acceleration))
+
+    def _contact_samples(self, angle: NDArray, shape: tuple[int, ...]) -> NDArray:
+        """Parts of contacts at which they are sampled, shape (samples, ...).
+
+        A long contact rings at first: there its samples are half a radian of θ apart.
+        """
+        places = _places()
+        longest = np.max(angle, initial=0, where=np.isfinite(angle))
+        if longest <= 3 * np.pi:
+            return places
+        zeta = max(float(np.nanmin(self.contact.damping_ratio)), RINGING / MOST_SAMPLES)
+        count = int(min(2 * longest, 2 * RINGING / zeta, MOST_SAMPLES))
+        steps = np.arange(1, count + 1).reshape(-1, *np.ones(len(shape), dtype=int))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ringing = steps / (2 * np.broadcast_to(angle, shape))
+        ringing = np.where((ringing > 0) & (ringing < 1), ringing, steps / (count + 1))
+        others = np.broadcast_to(places.reshape(-1, *steps.shape[1:]), (places.size, *shape))
+        return np.sort(np.concatenate([ringing, others]), axis=0)
+
+    def admissible(self, y: NDArray) -> NDArray:
+        """Whether a ball can follow an orbit: its `clearance` is positive, by a margin."""
+        return self.clearance(y) > MARGIN
+
+    def of_duration(self, duration: NDArray) -> NDArray:
+        """n-T orbits with given durations of the contact in closed form, shape (4, ...).
+
+        At a fixed duration the equations of an orbit are affine in X, Y and u. A solution may have
+        the wrong signs (`possible`), or be inadmissible.
+        """
+        angle = self.contact.frequency_ratio * np.asarray(duration, dtype=float)
+
+        def orbit(x, impact_height, u):
+            amplitude = np.hypot(x, impact_height)
+            phase = np.arctan2(impact_height, x)
+            return np.stack(np.broadcast_arrays(amplitude, phase, u + x, angle))
+
+        constant = self.equations(orbit(0.0, 0.0, 0.0))
+        units = [self.equations(orbit(*unit)) - constant for unit in np.eye(3)]
+        rows = np.moveaxis(np.stack(units, axis=1), (0, 1), (-2, -1))
+        solved = np.linalg.solve(rows, -np.moveaxis(constant, 0, -1)[..., np.newaxis])
+        return orbit(*np.moveaxis(solved[..., 0], -1, 0))
 
     def contact_duration(self, y: NDArray) -> NDArray:
         """Duration τ_b of the contact (Eq. 23)."""
@@ -437,18 +488,22 @@ OBSERVABLES: Mapping[str, Callable[[Family, NDArray], NDArray]] = {
     "centroid": Family.centroid,
     "centroid_gap": Family.centroid_gap,
     "stable": lambda family, y: is_stable(*family.trace_and_determinant(y)),
-    "admissible": lambda family, y: family.clearance(y) > 0,
+    "admissible": Family.admissible,
 }
 """Quantities of an orbit, by the names of their variables in datasets."""
 
 
-def _least(function, shape: tuple[int, ...], samples: int = 33) -> NDArray:
+def _places(samples: int = 33) -> NDArray:
+    """Places on the open interval (0, 1), denser towards its ends."""
+    return (1 - np.cos(np.pi * np.arange(1, samples + 1) / (samples + 1))) / 2
+
+
+def _least(function, shape: tuple[int, ...], places: NDArray | None = None) -> NDArray:
     """Minimum of each function of an array on the open interval (0, 1).
 
-    The samples are denser towards the ends of the interval, where the functions may be undefined.
-    The interval between the neighbours of the smallest sample is then refined four times. The final
-    samples are at most 1e-6 apart. The minimum of a smooth function has an error of the order of
-    the square of this distance.
+    The functions may be undefined at the ends of the interval. The interval between the neighbours
+    of the smallest sample is refined four times. The final samples are at most 1e-6 apart. The
+    minimum of a smooth function has an error of the order of the square of this distance.
 
     Parameters
     ----------
@@ -456,12 +511,15 @@ def _least(function, shape: tuple[int, ...], samples: int = 33) -> NDArray:
         Function of points in (0, 1), shape (samples, *shape). Its values have the same shape.
     shape
         Shape of the array of functions.
-    samples
-        Number of samples before the first refinement.
+    places
+        Samples before the first refinement in ascending order, shape (samples,) or
+        (samples, *shape); by default 33.
     """
     axes = (-1, *np.ones(len(shape), dtype=int))
-    places = (1 - np.cos(np.pi * np.arange(1, samples + 1) / (samples + 1))) / 2
-    grid = np.broadcast_to(places.reshape(axes), (samples, *shape))
+    places = _places() if places is None else places
+    if places.ndim == 1:
+        places = places.reshape(axes)
+    grid = np.broadcast_to(places, (len(places), *shape))
     steps = np.linspace(0, 1, 33).reshape(axes)
     for _ in range(4):
         best = np.clip(np.argmin(function(grid), axis=0), 1, len(grid) - 2)[np.newaxis]

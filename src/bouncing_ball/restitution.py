@@ -25,6 +25,11 @@ STICKING = 1e-9
 ball would bounce infinitely often in a finite time, with geometrically decreasing velocities."""
 
 
+MARGIN = 1e-9
+"""Margin of the flags stable and admissible. Without it, rounding errors would decide about an
+orbit at a bifurcation, or one that grazes."""
+
+
 def required(name: str, values: Numbers, wrong: NDArray, allowed: str) -> NDArray:
     """Return the values of an argument as an array; ValueError if some are wrong."""
     values = np.asarray(values)
@@ -155,11 +160,10 @@ def is_stable(trace: Numbers, determinant: Numbers) -> NDArray[np.bool_]:
     determinant < 1 both are inside the unit circle. For determinant = 1, without damping, both are
     on the circle: the orbit is *marginally stable*, because deviations neither decay nor grow. At a
     bifurcation, |trace| = 1 + determinant, the orbit is not stable. The conditions are decided by a
-    margin of 1e-9; without it, rounding errors would decide.
+    margin, `MARGIN`.
     """
     determinant = np.asarray(determinant)
-    margin = 1e-9
-    return (np.abs(trace) < 1 + determinant - margin) & (determinant < 1 + margin)
+    return (np.abs(trace) < 1 + determinant - MARGIN) & (determinant < 1 + MARGIN)
 
 
 def max_height(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
@@ -206,6 +210,14 @@ def grazing_height(n: int, r: float) -> float:
         lambda s: -needed(s), bounds=bounds, method="bounded", options={"xatol": 1e-12}
     )
     return -found.fun
+
+
+def admissible(n: int, r: float, impact_height: Numbers) -> NDArray[np.bool_]:
+    """Whether a ball can follow n-T orbits: their flights do not touch the table before its end.
+
+    The margin is that of `is_stable`.
+    """
+    return np.asarray(impact_height) > grazing_height(n, r) + MARGIN
 
 
 def flight_time(amplitude: float, time: float, velocity: float) -> float:

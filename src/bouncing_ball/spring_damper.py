@@ -284,11 +284,15 @@ def _quotient(a, b, s):
     """(e^{as} - e^{bs})/(a - b) for complex a and b, or the limit s e^{as} for a = b."""
     half = (a - b) * s / 2
     small = np.abs(half) < 1e-4
+    # The hyperbolic sine of a long contact would overflow.
+    long = np.abs(half.real) > 300
     # Complex arithmetic warns of NaN, but here NaN only marks elements without an orbit.
     with np.errstate(invalid="ignore"):
+        part = np.where(small | long, 1, half)
         # For small x, use the series of sinh(x)/x. The first omitted term is x⁴/120 < 1e-18.
-        ratio = np.where(small, 1 + half**2 / 6, np.sinh(half) / np.where(small, 1, half))
-        return s * np.exp((a + b) * s / 2) * ratio
+        ratio = np.where(small, 1 + half**2 / 6, np.sinh(part) / part)
+        quotient = s * np.exp((a + b) * s / 2) * ratio
+        return np.where(long, (np.exp(a * s) - np.exp(b * s)) / np.where(long, a - b, 1), quotient)
 
 
 def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacement") -> NDArray:

@@ -19,6 +19,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
+from numpy.typing import NDArray
 
 from paper_replication.datasets import parameters
 from paper_replication.drawing import Look, latex_number, legend_below, pale, sample
@@ -136,26 +137,57 @@ def pieces(kinds: np.ndarray) -> list[slice]:
     return [slice(int(start), int(stop) + 1) for start, stop in pairwise(edges)]
 
 
-def curve(
-    axes: Axes, x: xr.DataArray, y: xr.DataArray, admissible: xr.DataArray, **look: Any
-) -> None:
-    """Draw a line with dotted inadmissible parts.
+def kinds_of(data: xr.Dataset, prefix: str = "") -> np.ndarray:
+    """Return the kind of each orbit of a dataset, a key of `KINDS`, in the shape of its flags.
 
-    The first admissible part has the label, or the first of all if none is admissible. Of the
-    others, the first dotted one is labelled as inadmissible.
+    The prefix "restitution_" selects the flags of the restitution model.
     """
-    inadmissible = look | {"linestyle": KINDS["inadmissible"], "linewidth": 0.9}
-    kinds = admissible.values
-    # In the legend, the inadmissible part comes after the admissible one.
-    parts = sorted(pieces(kinds), key=lambda part: not kinds[part.start])
-    dotted = ~kinds & np.isfinite(y.values)
-    others = [part for part in parts[1:] if dotted[part].any() and not kinds[part.start]]
+    kinds = np.where(data[f"{prefix}stable"], "stable", "unstable")
+    return np.where(data[f"{prefix}admissible"], kinds, "inadmissible")
+
+
+def look_of(kind: str) -> Look:
+    """Return how a curve of one kind of orbit differs from the curve of stable orbits.
+
+    Unstable curves have crosses, because some stable curves are dashed.
+    """
+    if kind == "stable":
+        return {}
+    crosses: Look = {"marker": "x", "markersize": 3, "markevery": 0.12}
+    return {"linestyle": KINDS[kind], "linewidth": 0.9} | (crosses if kind == "unstable" else {})
+
+
+def named(name: str, kinds: np.ndarray) -> str:
+    """Return the name of a curve, with the kind of its orbits if none of them is stable.
+
+    Examples
+    --------
+    >>> named("ball", np.array("unstable")), named("ball", np.array(["stable", "unstable"]))
+    ('ball (unstable)', 'ball')
+    """
+    present = np.unique(kinds)
+    return name if "stable" in present else f"{name} ({', '.join(present)})"
+
+
+def curve(axes: Axes, x: NDArray, y: NDArray, kinds: np.ndarray, **look: Any) -> None:
+    """Draw a line whose parts have the style of the `kinds` of their orbits.
+
+    The first stable part has the label, and the first part of each other kind the name of this
+    kind. If no part is stable, the label has the kind (`named`).
+    """
+    shown = [part for part in pieces(kinds) if np.isfinite(y[part]).any()]
+    if not shown:  # the legend has its name
+        axes.plot([], [], **look)
+    # In the legend, parts of other kinds come after the stable ones.
+    parts = sorted(shown, key=lambda part: [*KINDS].index(kinds[part.start]))
+    labelled = {"stable"}
     for part in parts:
-        chosen = look if kinds[part.start] else inadmissible
-        label_of_part = look.get("label") if part == parts[0] else None
-        if part in others[:1]:
-            label_of_part = "inadmissible"
-        axes.plot(x.values[part], y.values[part], **(chosen | {"label": label_of_part}))
+        kind = kinds[part.start]
+        text = None if kind in labelled else kind
+        if part == parts[0] and "label" in look:
+            text = named(look["label"], kinds[np.isfinite(y)])
+        labelled.add(kind)
+        axes.plot(x[part], y[part], **(look | look_of(kind) | {"label": text}))
 
 
 # Branches of orbits. A branch is a dataset with two dimensions:
@@ -216,8 +248,7 @@ def draw_branch(axes: Axes, branch: xr.Dataset, phase: str, colour: str, width: 
     known = np.flatnonzero(branch.special_amplitude.notnull())
     special = branch.isel(special=known).sortby("special_along")
     place = np.searchsorted(branch.along, special.special_along)
-    stability = np.where(branch.stable, "stable", "unstable")
-    kinds = np.where(branch.admissible, stability, "inadmissible")
+    kinds = kinds_of(branch)
     # A special point gets the kind of the next orbit, or of the last orbit at the end.
     kinds = np.insert(kinds, place, kinds[np.minimum(place, kinds.size - 1)])
     amplitude = np.insert(branch.amplitude.values, place, special.special_amplitude)

@@ -27,9 +27,12 @@ from carbonelli2011.curves import (
     branch_legend,
     curve,
     draw_branch,
+    kinds_of,
     label,
+    look_of,
     mark_look,
     mark_special,
+    named,
     parted,
     restitution_branch,
     right_end,
@@ -129,12 +132,19 @@ def fig02(data: xr.Dataset) -> Figure:
     """Heights of ball and table over time for an n-T orbit of the restitution model."""
     figure, axes = panels(2.5)
     time = data.time / PERIOD
-    axes.plot(time, data.ball, color="black", label="ball $z$")
+    draw_ball(axes, time, data)
     axes.plot(time, data.table, color=TABLE, linewidth=2.0, label="table $w$")
     axes.set(xlabel=TIME, ylabel="height $z$, $w$", xlim=(0, float(time[-1])))
     axes.set_title(title(data, "n", "restitution", "amplitude"))
     legend_below(figure)
     return figure
+
+
+def draw_ball(axes: Axes, time: xr.DataArray, data: xr.Dataset) -> None:
+    """Draw the height of the ball on the orbit of a dataset."""
+    kind = str(kinds_of(data))
+    look: Look = {"color": "black"} | look_of(kind)
+    axes.plot(time, data.ball, label=named("ball $z$", np.array(kind)), **look)
 
 
 def fig03(data: xr.Dataset) -> Figure:
@@ -223,8 +233,8 @@ def draw_cases(axes: Axes, data: xr.Dataset, values: xr.DataArray) -> None:
     shades = colours(data.sizes["case"])
     for k, (name, colour, dashes) in enumerate(zip(names, shades, cycle(DASHES), strict=False)):
         look: Look = {"color": colour, "linestyle": dashes, "label": name}
-        admissible = data.admissible.isel(case=k)
-        curve(axes, data.frequency_ratio, values.isel(case=k), admissible, **look)
+        kinds = kinds_of(data.isel(case=k))
+        curve(axes, data.frequency_ratio.values, values.isel(case=k).values, kinds, **look)
     axes.set_title(common)
     along_ratio(axes, data.frequency_ratio)
 
@@ -258,7 +268,8 @@ def fig13(data: xr.Dataset) -> Figure:
             ("release_phase", "bounce_velocity", end, (-7, "right")),
         ):
             line = {"color": colour, "linestyle": look["linestyle"]}
-            curve(axes, case[phase] / np.pi, case[velocity] / np.pi, case.admissible, **line)
+            line_points = case[phase].values / np.pi, case[velocity].values / np.pi
+            curve(axes, *line_points, kinds_of(case), **line)
             dots = look | line | {"linestyle": "none"}
             axes.plot(marked[phase] / np.pi, marked[velocity] / np.pi, **dots)
             if k == labelled:
@@ -271,15 +282,17 @@ def fig13(data: xr.Dataset) -> Figure:
     entries = {
         r"start of contact, $(\varphi,\,z'_i)$": sample(**start),
         r"end of contact, $(\varphi+\tau_b,\,z'_b)$": sample(**end),
-        "restitution model": sample(**star),
+        named("restitution model", kinds_of(data, "restitution_")): sample(**star),
     }
+    exists = data.phase.notnull().values
     # A single case needs no legend of colours.
     if len(names) > 1:
-        square: Look = {"marker": "s", "linestyle": "none"}
-        pairs = zip(names, shades, strict=True)
-        entries |= {name: sample(color=colour, **square) for name, colour in pairs}
-    if (data.phase.notnull() & ~data.admissible).any():
-        entries["inadmissible"] = sample(linestyle=KINDS["inadmissible"])
+        for name, colour, kinds, known in zip(names, shades, kinds_of(data), exists, strict=True):
+            key = named(name, kinds[known]) if known.any() else name
+            entries[key] = sample(color=colour, marker="s", linestyle="none")
+    shown = kinds_of(data)[exists]
+    others = [kind for kind in KINDS if kind != "stable" and kind in shown]
+    entries |= {kind: sample(**look_of(kind)) for kind in others}
     legend_below(figure, entries, columns=1)
     return figure
 
@@ -352,7 +365,7 @@ def fig07(data: xr.Dataset) -> Figure:
     figure, axes = panels(2.9)
     time = data.time / PERIOD
     axes.plot(time, data.table, color=TABLE, linewidth=2.0, label="table $w$")
-    axes.plot(time, data.ball, color="black", label="ball $z$")
+    draw_ball(axes, time, data)
     end = float(time[-1])
     release = float(data.contact_duration) / PERIOD
     axes.axvspan(0.0, release, color="0.9", linewidth=0, label="contact")
@@ -396,7 +409,9 @@ def fig12(data: xr.Dataset) -> Figure:
     figure, (axes, summit) = panels(4.9, rows=2, height_ratios=(3, 2))
     time, table = three_cycles(data, data.table)
     axes.plot(time, table, color=TABLE, linewidth=0.8)
-    broad: Look = {"color": "0.72", "linewidth": 3.4, "label": "restitution model"}
+    rigid = kinds_of(data, "restitution_")
+    broad: Look = {"color": "0.72", "label": named("restitution model", rigid)}
+    broad |= look_of(str(rigid)) | {"linewidth": 3.4}
     for part in (axes, summit):
         part.plot(*three_cycles(data, data.restitution_ball), **broad)
         draw_contacts(part, data)
@@ -419,10 +434,14 @@ def draw_contacts(axes: Axes, data: xr.Dataset) -> None:
     for k, (colour, dashes) in enumerate(zip(shades, cycle(DASHES), strict=False)):
         orbit = stiff_first.isel(frequency_ratio=k)
         name = label(frequency_ratio=orbit.frequency_ratio)
+        kind = "stable"
         if orbit.ball.isnull().all():
             name += " (no orbit)"
+        else:
+            kind = str(kinds_of(orbit))
         look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 100}
-        axes.plot(*three_cycles(data, orbit.ball), label=name, **look)
+        look |= look_of(kind) | {"label": named(name, np.array(kind))}
+        axes.plot(*three_cycles(data, orbit.ball), **look)
 
 
 def three_cycles(data: xr.Dataset, height: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
@@ -484,7 +503,7 @@ def draw_instant(column: NDArray, case: xr.Dataset, rigid: float) -> None:
             axes.text(0.5, 0.5, "no orbit", transform=axes.transAxes, **middle)
         return
     motions.plot(case.time, case.table, color=TABLE, linewidth=2.0, label="table $w$")
-    motions.plot(case.time, case.ball, color="black", label="ball $z$")
+    draw_ball(motions, case.time, case)
     dashed: Look = {"color": CONTACT, "linestyle": DASHES[1], "label": "equivalent impact"}
     motions.plot(case.time, case.instant_ball, **dashed)
     motions.plot(case.centroid, case.instant_ball.min(), "o", color=CONTACT, markersize=4)
@@ -505,9 +524,9 @@ def draw_instant(column: NDArray, case: xr.Dataset, rigid: float) -> None:
         terms.bar(k, value, color=colour, label=name)
     terms.axhline(0, color="black", linewidth=0.6)
     higher = 100 * (case.summit / case.restitution_max_height - 1).item()
-    usual = "" if case.stable else "\n(unstable)"
-    kind = usual if case.admissible else "\n(inadmissible)"
-    terms.set_title(f"height\n${higher:+.1f}$ %{kind}")
+    kind = str(kinds_of(case))
+    below = "" if kind == "stable" else f"\n({kind})"
+    terms.set_title(f"height\n${higher:+.1f}$ %{below}")
     for axes in column:
         axes.yaxis.set_major_locator(MaxNLocator(3))
 
@@ -632,7 +651,7 @@ def fig14(data: xr.Dataset) -> Figure:
     """Maximum height in both models against ϖ, and the relative error of the restitution model."""
     figure, (axes, below) = panels(4.2, rows=2, sharex=True)
     look: Look = {"color": CONTACT, "label": "spring-damper model"}
-    curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
+    curve(axes, data.frequency_ratio.values, data.max_height.values, kinds_of(data), **look)
     limit = float(data.restitution_max_height)
     axes.axhline(limit, label="restitution model", **LIMIT)
     axes.set_ylabel(r"maximum height $\max\,z$")
@@ -661,12 +680,17 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     zeros = np.flatnonzero(sign[1:] * sign[:-1] < 0) + 1
     between = np.sqrt(ratio[zeros - 1] * ratio[zeros])
     bottom = 0.5 * np.min(error[error > 0], initial=tolerance)
-    axes.plot(np.insert(ratio, zeros, between), np.insert(error, zeros, bottom), color=CONTACT)
+    # The thresholds of permanent contact (Fig. 16) are no orbits.
+    kinds = kinds_of(data) if "stable" in data else np.full(ratio.size, "stable")
+    shown = np.insert(ratio, zeros, between), np.insert(error, zeros, bottom)
+    curve(axes, *shown, np.insert(kinds, zeros, kinds[zeros]), color=CONTACT)
     axes.axhline(tolerance, label=f"tolerance {percent} %", **GUIDE)
     threshold = float(data.error_threshold)
     if np.isfinite(threshold):
         axes.axvline(threshold, **GUIDE)
         value = rf"$\varpi_{{{name},{percent}\%}}={latex_number(threshold)}$"
+        after = np.searchsorted(ratio, threshold)
+        value = named(value, kinds[max(after - 1, 0) : after + 1])
         axes.plot(threshold, tolerance, "o", color="black", markersize=4, label=value)
     axes.set(yscale="log", ylabel="relative error")
     axes.set_ylim(bottom=bottom)

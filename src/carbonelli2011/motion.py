@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
 
-from carbonelli2011.curves import TABLE, label, title
+from carbonelli2011.curves import TABLE, kinds_of, label, named, title
 from carbonelli2011.paper import of_paper
 from paper_replication.datasets import parameters
 from paper_replication.drawing import POINTS, WIDTH, Look, colours, panels
@@ -78,7 +78,16 @@ def frames(data: xr.Dataset) -> xr.Dataset:
         },
         {
             "time": time,
-            "name": ("ball", ["rigid", *(label(frequency_ratio=ratio) for ratio in ratios)]),
+            "name": (
+                "ball",
+                [
+                    named("rigid", kinds_of(given, "restitution_")),
+                    *(
+                        named(label(frequency_ratio=ratio), np.array(kind))
+                        for ratio, kind in zip(ratios, kinds_of(given), strict=True)
+                    ),
+                ],
+            ),
             "colour": ("ball", [RIGID, *given.colour.values]),
         },
     )
@@ -112,7 +121,7 @@ def motion(data: xr.Dataset) -> Figure:
         axes.plot((x - 14, x + 14), (summits[k], summits[k]), color=colour, linewidth=1.6)
         bottom = (x, shown.centre[k, 0].item())
         axes.add_patch(Circle(bottom, facecolor=colour, gid=f"ball{k}", **ball))
-        axes.text(x, 12, shown.name.values[k], **middle)
+        axes.text(x, 12, shown.name.values[k].replace(" (", "\n("), **middle)
         axes.text(x, summits[0] + 9, f"${higher[k]:+.1f}$ %" if k else "height", **middle)
     return figure
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from integrated import around, contact
 
-from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.continuation import upper_orbits
 from bouncing_ball.orbits import OBSERVABLES, Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond.contacts import root_time
@@ -73,7 +73,7 @@ def test_the_orbits_of_the_replication_from_half_on(n, release):
     ratios = np.array([0.5, 0.8, 1.0, 4.0, 30.0])
     for r, share in ((1.0, 0.7), (0.85, 1.1), (0.4, 1.05)):
         amplitude = np.hypot(n * np.pi * (1 - r) / (1 + r), 0.6) * share
-        y = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+        y = upper_orbits(n, r, amplitude, ratios, release)[:, 0]
         zeta = damping_ratio(r, release)
         contact = Contact(ratios, zeta, release)
         family = Family(n, contact)

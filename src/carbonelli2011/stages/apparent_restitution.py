@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.continuation import upper_orbits
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact
 from paper_replication.datasets import grid
@@ -34,7 +34,7 @@ def along_frequency_ratio(
 ) -> xr.Dataset:
     """The quantities of the orbits, shape (case, ϖ), NaN where there is none."""
     family = Family(n, Contact.of_restitution(ratios, r[:, np.newaxis], release))
-    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release), QUANTITIES)
+    quantities = family.observables(upper_orbits(n, r, amplitude, ratios, release), QUANTITIES)
     shape = ("case", "frequency_ratio")
     labels = [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, amplitude, strict=True)]
     return xr.Dataset(
@@ -65,9 +65,16 @@ def amplitudes(parameters: dict, release: str) -> xr.Dataset:
     amplitude = np.array(parameters["amplitude"])
     r = np.full(amplitude.shape, parameters["restitution"])
     velocity = float(restitution.bounce_velocity(n))
+    phase = restitution.impact_phase(n, r, amplitude)
+    impact_height = amplitude * np.sin(phase)
     return along_frequency_ratio(n, r, amplitude, ratios, release).assign(
-        restitution_phase=("case", restitution.impact_phase(n, r, amplitude)),
+        restitution_phase=("case", phase),
         restitution_bounce_velocity=velocity,
+        restitution_stable=("case", restitution.stable(r, impact_height)),
+        restitution_admissible=(
+            "case",
+            restitution.admissible(n, parameters["restitution"], impact_height),
+        ),
         restitution_impact_velocity=-velocity,
     )
 

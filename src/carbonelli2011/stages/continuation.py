@@ -106,7 +106,7 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
         restitution_amplitude=("point", np.hypot(x, impact_height)),
         restitution_phase=("point", np.arctan2(impact_height, x)),
         restitution_stable=("point", restitution.stable(r, impact_height)),
-        restitution_admissible=("point", impact_height > restitution.grazing_height(n, r)),
+        restitution_admissible=("point", restitution.admissible(n, r, impact_height)),
         saddle_node_amplitude=x,
         saddle_node_phase=0.0,
         period_doubling_amplitude=doubling,
@@ -132,7 +132,7 @@ def table1(parameters: dict, release: str) -> xr.Dataset:
     amplitude, phase, _, angle = ends
     duration = angle / np.array(ratios)[:, np.newaxis]
     family = Family(np.array(n)[:, np.newaxis], contact)
-    admissible = [family.clearance(ends[..., k]) > 0 for k in range(bounds.size)]
+    admissible = [family.admissible(ends[..., k]) for k in range(bounds.size)]
     fold = restitution.saddle_node(n, r)
     doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
     shape = ("n", "frequency_ratio", "bound")
@@ -172,7 +172,7 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
             continue
         contact = Contact.of_restitution(turn, r, release)
         orbit = bifurcations(family, "period doubling", contact)
-        admissible.append(bool(Family(family, contact).clearance(orbit) > 0))
+        admissible.append(bool(Family(family, contact).admissible(orbit)))
     return xr.Dataset(
         {
             "period_doubling_turn": ("n", turns),

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.continuation import upper_orbits
 from bouncing_ball.errors import errors, threshold
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact
@@ -18,8 +18,8 @@ def fig14(parameters: dict, release: str) -> xr.Dataset:
     amplitude = parameters["amplitude"]
     ratios = grid(parameters["frequency_ratio"])
     family = Family(n, Contact.of_restitution(ratios, r, release))
-    orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-    names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
+    orbits = upper_orbits(n, r, amplitude, ratios, release)[:, 0]
+    names = ("max_height", "phase", "contact_duration", "impact_velocity", "stable", "admissible")
     quantities = family.observables(orbits, names)
     error = errors(["max_height"], n, r, amplitude, ratios, release)["max_height"]
     found = threshold(ratios, error, parameters["tolerance"])

@@ -10,17 +10,21 @@ FIRST = 12
 
 
 def fig02(parameters: dict) -> xr.Dataset:
-    """Ball and table over some periods of the stable n-T orbit."""
+    """Ball and table over some periods of the n-T orbit that is stable next to the saddle-node."""
     n = parameters["n"]
+    r = parameters["restitution"]
     amplitude = parameters["amplitude"]
-    phase = restitution.impact_phase(n, parameters["restitution"], amplitude)
+    phase = restitution.impact_phase(n, r, amplitude)
+    impact_height = amplitude * np.sin(phase)
     time = np.linspace(0, parameters["periods"] * 2 * np.pi * n, parameters["samples"])
     return xr.Dataset(
         {
-            "ball": ("time", restitution.height(n, amplitude * np.sin(phase), time)),
+            "ball": ("time", restitution.height(n, impact_height, time)),
             "ball_velocity": ("time", restitution.velocity(n, time)),
             "table": ("time", amplitude * np.sin(time + phase)),
             "phase": float(phase),
+            "stable": restitution.stable(r, impact_height),
+            "admissible": restitution.admissible(n, r, impact_height),
         },
         {"time": time},
     )
@@ -46,7 +50,13 @@ def fig03(parameters: dict) -> xr.Dataset:
             "amplitude": (shape, np.hypot(x[:, np.newaxis], impact_height)),
             "phase": (shape, np.arctan2(impact_height, x[:, np.newaxis])),
             "stable": (shape, restitution.stable(r, impact_height)),
-            "admissible": (shape, impact_height > grazing[:, np.newaxis]),
+            "admissible": (
+                shape,
+                [
+                    restitution.admissible(each, r, heights)
+                    for each, heights in zip(n, impact_height, strict=True)
+                ],
+            ),
             "grazing_amplitude": ("n", np.where(seen, np.hypot(x, grazing), np.nan)),
             "grazing_phase": ("n", np.where(seen, np.arctan2(grazing, x), np.nan)),
             "saddle_node_amplitude": ("n", x),

@@ -4,12 +4,19 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import stable_orbits
+from bouncing_ball.continuation import upper_orbits
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact
 
 # Quantities of each orbit in the datasets.
-STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
+STATE = (
+    "phase",
+    "contact_duration",
+    "impact_velocity",
+    "bounce_velocity",
+    "stable",
+    "admissible",
+)
 INSTANT = (
     "phase",
     "contact_duration",
@@ -32,7 +39,7 @@ def fig07(parameters: dict, release: str) -> xr.Dataset:
     amplitude = parameters["amplitude"]
     ratio = parameters["frequency_ratio"]
     family = Family(n, Contact.of_restitution(ratio, r, release))
-    y = stable_orbits(n, r, amplitude, ratio, release)[:, 0, 0]
+    y = upper_orbits(n, r, amplitude, ratio, release)[:, 0, 0]
     orbit = family.observables(y, STATE)
     half = parameters["samples"] // 2
     during = np.linspace(0, orbit["contact_duration"], half)
@@ -47,7 +54,7 @@ def fig07(parameters: dict, release: str) -> xr.Dataset:
             "table": ("time", amplitude * np.sin(time + orbit["phase"])),
             "contact": ("time", np.arange(time.size) < half),
             "frequency_ratio": ratio,
-            **{name: float(orbit[name]) for name in STATE},
+            **{name: orbit[name] for name in STATE},
         },
         {"time": time},
     )
@@ -65,7 +72,7 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     ratios = np.sort(parameters["frequency_ratio"])
     period = 2 * np.pi * n
     families = [Family(n, Contact.of_restitution(ratio, r, release)) for ratio in ratios]
-    orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+    orbits = upper_orbits(n, r, amplitude, ratios, release)[:, 0]
     rows = [each.observables(y, STATE) for each, y in zip(families, orbits.T, strict=True)]
     state = {name: np.array([row[name] for row in rows]) for name in STATE}
     phase = float(restitution.impact_phase(n, r, amplitude))
@@ -92,6 +99,8 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
             ),
             "table": ("table_phase", amplitude * np.sin(table_phase)),
             "restitution_phase": phase,
+            "restitution_stable": restitution.stable(r, impact_height),
+            "restitution_admissible": restitution.admissible(n, r, impact_height),
             **{name: ("frequency_ratio", values) for name, values in state.items()},
         },
         {"frequency_ratio": ratios, "table_phase": table_phase},
@@ -115,7 +124,7 @@ def impact_instant(parameters: dict, release: str) -> xr.Dataset:
     )
     family = Family(n, Contact.of_restitution(ratio, r, release))
     along, position = np.unique(ratio, return_inverse=True)
-    y = stable_orbits(n, r, amplitude, along, release)[:, np.arange(ratio.size), position]
+    y = upper_orbits(n, r, amplitude, along, release)[:, np.arange(ratio.size), position]
     orbit = family.observables(y, INSTANT)
     quarter = max(1, parameters["samples"] // 4)
     part = np.arange(-quarter, 3 * quarter + 1)[:, np.newaxis] / (2 * quarter)

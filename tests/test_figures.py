@@ -1,5 +1,6 @@
 """The figures: what is drawn is what the datasets have."""
 
+import json
 import re
 import subprocess
 import sys
@@ -10,12 +11,14 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 from matplotlib.contour import QuadContourSet
 from matplotlib.text import Text
 from tests.reference import with_more
 
 from bouncing_ball import restitution
 from carbonelli2011 import curves, figures, paper
+from carbonelli2011.stages import apparent_restitution, restitution_model, time_histories
 from paper_replication import datasets, drawing
 
 REFERENCE = Path(__file__).parents[1] / "figures"
@@ -537,3 +540,29 @@ def test_the_inset_of_figure_3_has_both_period_doublings_of_the_last_family():
         (marks,) = [line.get_xydata() for line in inset.lines if line.get_marker() == mark]
         assert marks[np.isfinite(marks).all(axis=1)] == pytest.approx(np.array([point]))
         assert inset.viewLim.contains(*point)
+
+
+@pytest.mark.parametrize(
+    ("stage", "name", "change", "words"),
+    [
+        (time_histories, "fig12", {"amplitude": 3.0}, "restitution model (unstable)"),
+        (time_histories, "fig07", {"amplitude": 1.3}, "ball $z$ (unstable)"),
+        (restitution_model, "fig02", {"amplitude": 1.5}, "ball $z$ (unstable)"),
+        (restitution_model, "fig02", {"restitution": 0.01, "amplitude": 3.08}, "(inadmissible)"),
+        (apparent_restitution, "fig10", {"amplitude": [1.5, 1.0]}, r"$\Lambda=1.5$ (unstable)"),
+        (apparent_restitution, "fig10", {"amplitude": [1.3]}, "unstable"),
+        (apparent_restitution, "fig13", {"amplitude": [1.0, 3.0]}, r"$\Lambda=3$ (unstable)"),
+    ],
+)
+def test_an_orbit_that_no_ball_follows_or_keeps_is_named_and_looks_different(
+    stage, name, change, words
+):
+    given = yaml.safe_load((REFERENCE.parent / "config/config.yaml").read_text("utf-8"))
+    given = given[stage.__name__.rpartition(".")[2]][name] | change
+    more = () if stage is restitution_model else ("displacement",)
+    data = stage.STAGE[name](given, *more)
+    data.attrs["parameters"] = json.dumps(given)
+    figure = figures.draw(name, data)
+    (legend,) = figure.legends
+    assert any(words in text.get_text() for text in legend.get_texts())
+    assert "--" in {line.get_linestyle() for line in figure.axes[0].lines}

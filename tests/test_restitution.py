@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests import independent
 
-from bouncing_ball import restitution
+from bouncing_ball import continuation, errors, restitution
 
 # The tolerance of what takes some hundred roundings: a few hundred units of 1e-16.
 ROUNDING = 1e-12
@@ -267,3 +267,34 @@ def test_a_short_flight_from_a_table_that_begins_to_hold_the_ball_again(before_t
     expected = 3 * (amplitude * np.sin(time) - 1) / (-amplitude * np.cos(time))
     # The next order is the square of this time.
     assert found == pytest.approx(expected, abs=expected**2)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "time", "velocity", "words"),
+    [
+        (1.0, 0.0, 0.5, "velocity is 0.5: give at least Λ cos τ = 1"),
+        (0.5, 0.0, 0.5, "the ball rests"),
+        (1.0, 0.0, np.nan, "velocity is nan: give finite velocity"),
+        (np.nan, 0.0, 1.0, "Λ is nan"),
+    ],
+)
+def test_a_flight_that_does_not_exist_is_refused(amplitude, time, velocity, words):
+    for function, given in ((restitution.flight_time, ()), (restitution.impact_map, (0.85,))):
+        with pytest.raises(ValueError, match=words):
+            function(*given, amplitude, time, velocity)
+
+
+def test_arguments_of_another_kind_are_named():
+    with pytest.raises(ValueError, match="impacts is 0"):
+        restitution.iterate(0.5, 1.2, 1.0, 3.0, 0)
+    for ratios in ([], ["10"], [[10.0, 20.0]]):
+        with pytest.raises(ValueError, match="ϖ is "):
+            errors.errors(["max_height"], 1, 0.65, 1.0, ratios)
+    with pytest.raises(ValueError, match=r"r is '0\.65'"):
+        errors.errors(["max_height"], 1, "0.65", 1.0, [10.0])
+
+
+def test_stable_orbits_are_stable():
+    found = continuation.stable_orbits(1, 0.65, [1.0, 1.5], [100.0])[0, :, 0]
+    np.testing.assert_array_equal(found, [1.0, np.nan])
+    assert continuation.upper_orbits(1, 0.65, 1.5, 100.0)[0] == 1.5

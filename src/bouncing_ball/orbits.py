@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from bouncing_ball.restitution import MARGIN, Numbers, is_stable, periods, required
 from bouncing_ball.spring_damper import NO_CONTACT, Contact
 
-
 RINGING = 15
 """Decay rates ζθ after which a contact no longer rings, and its samples may be far apart."""
 
@@ -38,6 +37,7 @@ def contact_of_ball(frequency_ratio: Numbers, r: float, release: str) -> Contact
 
     Raises NoOrbit if there is none (`spring_damper.damping_ratio`).
     """
+    r = required("r", r, False, "0 < r <= 1")
     required("r", r, np.isnan(r), "0 < r <= 1")
     contact = Contact.of_restitution(frequency_ratio, r, release)
     if np.isnan(contact.damping_ratio):

@@ -30,9 +30,11 @@ MARGIN = 1e-9
 orbit at a bifurcation, or one that grazes."""
 
 
-def required(name: str, values: Numbers, wrong: NDArray, allowed: str) -> NDArray:
-    """Return the values of an argument as an array; ValueError if some are wrong."""
+def required(name: str, values: Numbers, wrong: NDArray | bool, allowed: str) -> NDArray:
+    """Return the values of an argument as an array; ValueError if some are wrong, or no numbers."""
     values = np.asarray(values)
+    if values.dtype.kind not in "biufc":
+        raise ValueError(f"{name} is {values.tolist()!r}: give {allowed}")
     if np.any(wrong):
         raise ValueError(f"{name} is {values[wrong].flat[0]:g}: give {allowed}")
     return values
@@ -48,6 +50,7 @@ def coefficient(r: Numbers) -> NDArray:
 
     NaN passes, because it marks elements of an array for which no contact exists.
     """
+    r = required("r", r, False, "0 < r <= 1")
     return required("r", r, np.less_equal(r, 0) | np.greater(r, 1), "0 < r <= 1")
 
 
@@ -56,6 +59,7 @@ def finite(name: str, values: Numbers) -> NDArray:
 
     Closed forms have no such check: they return NaN for NaN.
     """
+    values = required(name, values, False, f"finite {name}")
     return required(name, values, ~np.isfinite(values), f"finite {name}")
 
 
@@ -65,6 +69,8 @@ def ascending(ratios: Numbers) -> NDArray:
     A search for thresholds needs the order. A number becomes an array of one.
     """
     ratios = np.atleast_1d(ratios)
+    if ratios.ndim > 1 or ratios.size == 0 or ratios.dtype.kind not in "iuf":
+        raise ValueError(f"ϖ is {ratios.tolist()!r}: give a number, or a list of numbers")
     wrong = ~(np.isfinite(ratios) & np.greater(ratios, 0))
     wrong[1:] |= ratios[1:] <= ratios[:-1]
     return required("ϖ", ratios, wrong, "finite ϖ > 0 in ascending order")
@@ -229,9 +235,20 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
 
     A ball without velocity relative to the table leaves it only if Λ sin τ >= 1. The table then
     falls at least as fast as the ball.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not finite, the ball is slower than the table, or it stays on the table.
     """
+    for name, value in (("Λ", amplitude), ("τ", time), ("velocity", velocity)):
+        finite(name, value)
     start = amplitude * np.sin(time)
     relative = velocity - amplitude * np.cos(time)
+    table = f"Λ cos τ = {amplitude * np.cos(time):g}, the velocity of the table"
+    required("velocity", velocity, np.less(relative, -STICKING), f"at least {table}")
+    rests = relative <= STICKING and start < 1 - STICKING
+    required("velocity", velocity, rests, f"more than {table}: below Λ sin τ = 1 the ball rests")
 
     def gap(s):
         return start + velocity * s - s**2 / 2 - amplitude * np.sin(time + s)
@@ -356,8 +373,10 @@ def iterate(r: float, amplitude: float, time: float, velocity: float, impacts: i
     Raises
     ------
     ValueError
-        If the ball comes to rest on a table with Λ <= 1 (Eq. 9).
+        If the ball comes to rest on a table with Λ <= 1 (Eq. 9), or an argument is wrong.
     """
+    whole = np.greater_equal(impacts, 1) & (np.mod(impacts, 1) == 0)
+    required("impacts", impacts, ~whole, "a whole number of impacts >= 1")
     times = np.empty(impacts)
     velocities = np.empty(impacts)
     growth = np.full(impacts - 1, np.nan)

@@ -31,6 +31,7 @@ def check_ratios(frequency_ratio: Numbers, damping_ratio: Numbers) -> None:
 
     NaN passes, because it marks elements of an array for which no contact exists.
     """
+    frequency_ratio = required("ϖ", frequency_ratio, False, "ϖ > 0")
     required("ϖ", frequency_ratio, np.less_equal(frequency_ratio, 0), "ϖ > 0")
     wrong = np.less(damping_ratio, 0) | np.greater_equal(damping_ratio, 1)
     required("ζ", damping_ratio, wrong, "0 <= ζ < 1")

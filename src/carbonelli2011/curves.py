@@ -140,10 +140,14 @@ def pieces(kinds: np.ndarray) -> list[slice]:
 def kinds_of(data: xr.Dataset, prefix: str = "") -> np.ndarray:
     """Return the kind of each orbit of a dataset, a key of `KINDS`, in the shape of its flags.
 
-    The prefix "restitution_" selects the flags of the restitution model.
+    The prefix "restitution_" selects the flags of the restitution model. A dataset of an older run
+    may lack a flag, which then counts as true.
     """
-    kinds = np.where(data[f"{prefix}stable"], "stable", "unstable")
-    return np.where(data[f"{prefix}admissible"], kinds, "inadmissible")
+    like = data["phase"].notnull() if not prefix else data["restitution_phase"].notnull()
+    stable, admissible = (
+        data.get(f"{prefix}{flag}", xr.ones_like(like)) for flag in ("stable", "admissible")
+    )
+    return np.where(admissible, np.where(stable, "stable", "unstable"), "inadmissible")
 
 
 def look_of(kind: str) -> Look:

@@ -503,7 +503,7 @@ def draw_instant(column: NDArray, case: xr.Dataset, rigid: float) -> None:
             axes.text(0.5, 0.5, "no orbit", transform=axes.transAxes, **middle)
         return
     motions.plot(case.time, case.table, color=TABLE, linewidth=2.0, label="table $w$")
-    draw_ball(motions, case.time, case)
+    motions.plot(case.time, case.ball, color="black", label="ball $z$")
     dashed: Look = {"color": CONTACT, "linestyle": DASHES[1], "label": "equivalent impact"}
     motions.plot(case.time, case.instant_ball, **dashed)
     motions.plot(case.centroid, case.instant_ball.min(), "o", color=CONTACT, markersize=4)
@@ -524,7 +524,8 @@ def draw_instant(column: NDArray, case: xr.Dataset, rigid: float) -> None:
         terms.bar(k, value, color=colour, label=name)
     terms.axhline(0, color="black", linewidth=0.6)
     higher = 100 * (case.summit / case.restitution_max_height - 1).item()
-    kind = str(kinds_of(case))
+    kind = "stable" if case.stable else "unstable"
+    kind = kind if case.admissible else "inadmissible"
     below = "" if kind == "stable" else f"\n({kind})"
     terms.set_title(f"height\n${higher:+.1f}$ %{below}")
     for axes in column:
@@ -681,7 +682,7 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     between = np.sqrt(ratio[zeros - 1] * ratio[zeros])
     bottom = 0.5 * np.min(error[error > 0], initial=tolerance)
     # The thresholds of permanent contact (Fig. 16) are no orbits.
-    kinds = kinds_of(data) if "stable" in data else np.full(ratio.size, "stable")
+    kinds = kinds_of(data) if "phase" in data else np.full(ratio.size, "stable")
     shown = np.insert(ratio, zeros, between), np.insert(error, zeros, bottom)
     curve(axes, *shown, np.insert(kinds, zeros, kinds[zeros]), color=CONTACT)
     axes.axhline(tolerance, label=f"tolerance {percent} %", **GUIDE)

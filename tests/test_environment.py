@@ -75,6 +75,14 @@ def test_what_differs_is_installed_and_nothing_else(house, change):
     assert (house / "pip.log").read_text() == log
 
 
+def test_the_tools_of_developers_are_asked_for_by_those_who_need_them(house):
+    develop = "install", ".venv", ".developing", "requirements.lock"
+    assert run(house, *develop)[0] == 0
+    (house / NOTED).rename(house / "x")
+    (house / "pip").write_text("exit 1\n")
+    assert run(house, *develop)[0] == 1
+
+
 REFUSED = {
     "mv .venv/lib/python3.11 .venv/lib/python3.10": f"its Python is now python3.11. {AGAIN}",
     "ln -sf /nowhere .venv/bin/python": f"has a Python that does not run. {AGAIN}",

@@ -4,6 +4,8 @@ The scripts only write their outputs here (see checkout.py): the rules are teste
 """
 
 import ast
+import os
+import subprocess
 import sys
 import tomllib
 from inspect import signature
@@ -57,6 +59,24 @@ def test_a_name_makes_its_files_and_needs_its_stage_only(fresh):
     assert fresh.run("--cores", "1", "fig14")[0] == 0
     files = {f"figures/fig14.{kind}" for kind in ("nc", "png", "svg")}
     assert fresh.made() == files | {"figures/thresholds.nc"}
+
+
+def test_a_comparison_without_names_makes_everything(fresh):
+    assert fresh.planned("diff") == fresh.planned() | {"diff"}
+
+
+def test_make_computes_what_it_judges():
+    """The results that are accepted are judged first; a replication begins with nothing."""
+
+    def commands(target):
+        command = ["make", "--dry-run", "-C", str(ROOT), target]
+        return subprocess.check_output(command, text=True).splitlines()
+
+    judged = [line for line in commands("accept") if "pytest" in line or "snakemake" in line]
+    assert ["-- accept" in line for line in judged] == [False, False, True]
+    assert "CANDIDATE=results" in judged[1]
+    lines = commands("replication")
+    assert lines.index("rm -rf results .snakemake") < lines.index(judged[0].rstrip() + " diff")
 
 
 def test_a_run_in_another_folder_has_its_own_results(fresh, tmp_path):
@@ -132,6 +152,16 @@ def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):
     assert used.planned() == set()
     used.edit(file, old, new)
     assert used.planned() == again
+
+
+def test_a_new_module_runs_again_what_may_import_it(used):
+    """However old the file is."""
+    for path in used.path.rglob("*.*"):
+        path.touch()
+    new = used.path / "src/bouncing_ball/extra.py"
+    new.touch()
+    os.utime(new, (0, 0))
+    assert used.planned() >= {*COMPUTED}
 
 
 def imports(package: str) -> set[str]:

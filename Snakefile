@@ -26,11 +26,11 @@ with from_source(TOP / "src"):
         captions,
         checked,
         code_of_packages,
+        computed_from,
         datasets,
         entries,
         named,
         names,
-        parameters,
         shown_as,
         stages,
         stop,
@@ -140,7 +140,7 @@ rule restitution_model:
         record="results/records/restitution_model.json",
     params:
         stage="restitution_model",
-        entries=parameters(config["restitution_model"]),
+        entries=computed_from(config["restitution_model"]),
         settings={},
     log:
         "results/logs/restitution_model.log",
@@ -159,7 +159,7 @@ rule apparent_restitution:
         record="results/records/apparent_restitution.json",
     params:
         stage="apparent_restitution",
-        entries=parameters(config["apparent_restitution"]),
+        entries=computed_from(config["apparent_restitution"]),
         settings={"release": config["release"]},
     log:
         "results/logs/apparent_restitution.log",
@@ -178,7 +178,7 @@ rule continuation:
         record="results/records/continuation.json",
     params:
         stage="continuation",
-        entries=parameters(config["continuation"]),
+        entries=computed_from(config["continuation"]),
         settings={"release": config["release"], "largest_step": config["largest_step"]},
     log:
         "results/logs/continuation.log",
@@ -197,7 +197,7 @@ rule permanent_contact:
         record="results/records/permanent_contact.json",
     params:
         stage="permanent_contact",
-        entries=parameters(config["permanent_contact"]),
+        entries=computed_from(config["permanent_contact"]),
         settings={"release": config["release"]},
     log:
         "results/logs/permanent_contact.log",
@@ -216,7 +216,7 @@ rule error_thresholds:
         record="results/records/error_thresholds.json",
     params:
         stage="error_thresholds",
-        entries=parameters(config["error_thresholds"]),
+        entries=computed_from(config["error_thresholds"]),
         settings={"release": config["release"]},
     log:
         "results/logs/error_thresholds.log",
@@ -235,7 +235,7 @@ rule validity:
         record="results/records/validity.json",
     params:
         stage="validity",
-        entries=parameters(config["validity"]),
+        entries=computed_from(config["validity"]),
         settings={"release": config["release"]},
     log:
         "results/logs/validity.log",
@@ -254,7 +254,7 @@ rule time_histories:
         record="results/records/time_histories.json",
     params:
         stage="time_histories",
-        entries=parameters(config["time_histories"]),
+        entries=computed_from(config["time_histories"]),
         settings={"release": config["release"]},
     log:
         "results/logs/time_histories.log",
@@ -273,7 +273,7 @@ rule printed_numbers:
         record="results/records/printed_numbers.json",
     params:
         stage="printed_numbers",
-        entries=parameters(config["printed_numbers"]),
+        entries=computed_from(config["printed_numbers"]),
         settings={},
     log:
         "results/logs/printed_numbers.log",

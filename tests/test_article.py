@@ -39,7 +39,7 @@ def text_of_reference(name: str) -> str:
 
 def text_of(name: str, data: dict[str, xr.Dataset]) -> str:
     """The article or its supplement."""
-    return origins.bare(article.written(name, data))
+    return origins.bare(article.text(name, data))
 
 
 def decimals(text: str) -> set[str]:
@@ -100,7 +100,7 @@ def test_every_computed_number_follows_a_dataset(name, data):
 @pytest.mark.parametrize("name", ["paper", "supplement"])
 def test_numbers_follow_no_dataset_that_their_expressions_do_not_name(name, data):
     def gave(datasets: dict[str, xr.Dataset]) -> dict[int, list[str]]:
-        return origins.printed(article.written(name, datasets))
+        return origins.printed(article.text(name, datasets))
 
     origin = article.origins_of(name, data)
     before = gave(data)
@@ -184,7 +184,7 @@ def test_counts_follow_a_dataset(data):
     counts = {"below_orbits": 7001, "compliant_reproduced": 7002}
     others = {name: data["hypotheses"][name] * 0 + count for name, count in counts.items()}
     others = data | {"hypotheses": data["hypotheses"].assign(others)}
-    text = origins.bare(article.written("paper", others))
+    text = origins.bare(article.text("paper", others))
     assert [str(count) in text for count in counts.values()] == [True, True]
 
 
@@ -249,7 +249,7 @@ def test_the_article_of_a_run_with_other_parameters_names_them(data):
         "table1": with_parameters(data["table1"], frequency_ratio=[1e4, 50.0]),
     }
     for name in ("paper", "supplement"):
-        text = origins.bare(article.written(name, data | others))
+        text = origins.bare(article.text(name, data | others))
         assert re.findall("^- [a-z].*", text, re.MULTILINE) == [
             "- fig11: restitution is 0.7 instead of 0.65",
             "- fig14: n is 2 instead of 1",
@@ -258,19 +258,19 @@ def test_the_article_of_a_run_with_other_parameters_names_them(data):
         assert len(text.splitlines()) < 30
     forced = {name: with_parameters(data[name], release="force") for name in ("fig05", "fig06")}
     line = "- fig05, fig06: release is force instead of displacement\n"
-    assert line in article.written("paper", data | forced)
+    assert line in article.text("paper", data | forced)
 
 
 def test_the_article_of_a_run_without_a_number_that_a_claim_needs_says_so(data):
     others = data | {"fig14": data["fig14"].assign(error_threshold=np.nan)}
     others["claims"] = claims.judge(others).assign_attrs(data["claims"].attrs)
-    assert "- a number that decides it is missing in fig14\n" in article.written("paper", others)
+    assert "- a number that decides it is missing in fig14\n" in article.text("paper", others)
 
 
 def test_the_article_does_not_depend_on_the_number_of_points(data):
     axis = parameters(data["fig14"])["frequency_ratio"] | {"samples": 77}
     others = data | {"fig14": with_parameters(data["fig14"], frequency_ratio=axis)}
-    assert origins.bare(article.written("paper", others)) == text_of_reference("paper")
+    assert origins.bare(article.text("paper", others)) == text_of_reference("paper")
 
 
 @pytest.mark.parametrize("name", TEXTS)

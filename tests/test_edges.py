@@ -330,7 +330,7 @@ def assert_texts_are_true(changed: dict) -> None:
                 assert found["verdict"] == "not asked"
             if found["verdict"] == "not asked":
                 unasked.add(found["reason"])
-    if unasked or paper.differences(datasets):
+    if unasked or paper.changed_parameters(datasets):
         return
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(texts, "fixed", finite)
@@ -338,7 +338,7 @@ def assert_texts_are_true(changed: dict) -> None:
         patch.setitem(filters, "fixed", finite)
         for name in ("paper", "supplement"):
             if changed.keys() & named_in(name):
-                assert "another run" not in article.written(name, datasets)
+                assert "another run" not in article.text(name, datasets)
 
 
 @pytest.mark.parametrize(("section", "name", "changes"), [*edges(), *CASES], ids=str)
@@ -364,7 +364,7 @@ def test_the_smallest_of_the_largest_steps_is_still_the_run_of_the_paper():
     data = made("continuation", "fig15", CONFIGURATION | {"largest_step": 0.02})
     assert_picture_is_true("fig15", data, True)
     assert_texts_are_true({"fig15": data})
-    assert paper.differences({**reference(), "fig15": data}) == []
+    assert paper.changed_parameters({**reference(), "fig15": data}) == []
 
 
 def test_the_branches_of_r_of_1_are_flat_and_bifurcations_beyond_the_axis_are_not_named():
@@ -407,4 +407,4 @@ def test_another_release_gives_true_pages():
     datasets["claims"] = judge(datasets).assign_attrs(reference()["claims"].attrs)
     page = re.sub(r"(?s)<style>.*?</style>", "", index.filled_in("html", datasets, ENTRIES))
     assert not re.search(r"\bnan\b|\binf\b|\bNone\b(?! of)|\w+Error\b", page)
-    assert article.written("paper", datasets).startswith("# Article of another run")
+    assert article.text("paper", datasets).startswith("# Article of another run")

@@ -59,7 +59,7 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def texts(data) -> dict[str, str]:
     """The pages by the names of their files."""
-    every = index.written(data, ENTRIES)
+    every = index.pages(data, ENTRIES)
     return {name: text for name, text in every.items() if name.endswith(".html")}
 
 
@@ -235,7 +235,7 @@ def test_the_article_of_another_run_is_a_page_with_links_to_its_results(data):
     changed = data | {"fig14": with_parameters(data["fig14"], n=2)}
     changed["fig03"] = with_parameters(data["fig03"], n=[7])
     for name in ("paper", "supplement"):
-        page = Page(text_pages.page_of(article.written(name, changed), name))
+        page = Page(text_pages.page_of(article.text(name, changed), name))
         assert "fig03: n lacks 1, 2, 3, 4, 5" in page.texts
         assert "fig14: n is 2 instead of 1" in page.texts
         assert {"index.html", "claims.html"} <= {*page.places["href"]}
@@ -245,7 +245,7 @@ def test_the_article_of_another_run_is_a_page_with_links_to_its_results(data):
 
 def test_formulas_are_mathml(texts, data):
     for name in ("paper", "supplement"):
-        text = origins.bare(article.written(name, data))
+        text = origins.bare(article.text(name, data))
         inline = re.findall(r"(?<!\$)\$[^$]+\$(?!\$)", text)
         page = texts[f"{name}.html"]
         assert page.count("<math") >= len(inline) > 0
@@ -289,7 +289,7 @@ def test_only_a_formula_and_its_punctuation_are_kept_on_one_line(texts):
 def test_a_picture_has_a_name_and_below_it_a_caption(data, read, listed):
     """The caption is a text that everybody reads, and the alternative text does not repeat it."""
     shown = re.findall(
-        r"^!\[(.+)\]\(figures/\w+\.png\)\n\*\*.+\*\* \S", article.written("paper", data), re.M
+        r"^!\[(.+)\]\(figures/\w+\.png\)\n\*\*.+\*\* \S", article.text("paper", data), re.M
     )
     assert read["paper.html"].places["alt"] == shown and len(shown) > 16
     for name, caption in CAPTIONS.items():

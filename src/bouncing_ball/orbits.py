@@ -37,7 +37,7 @@ def contact_of_ball(frequency_ratio: Numbers, r: float, release: str) -> Contact
 
     Raises NoOrbit if there is none (`spring_damper.damping_ratio`).
     """
-    r = required("r", r, False, "0 < r <= 1")
+    r = float(required("r", r, False, "0 < r <= 1"))
     required("r", r, np.isnan(r), "0 < r <= 1")
     contact = Contact.of_restitution(frequency_ratio, r, release)
     if np.isnan(contact.damping_ratio):

@@ -33,7 +33,7 @@ BEHIND = {
     "others_with_82": ("hypotheses",),
     "stiff_errors": ("fig05", "fig06", "fig10"),
 }
-"""The datasets behind the names that `written` gives to its templates."""
+"""The datasets behind the names that `text` gives to its templates."""
 
 STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
@@ -63,7 +63,7 @@ def filled_in(
     )
 
 
-def written(name: str, datasets: Datasets) -> str:
+def text(name: str, datasets: Datasets) -> str:
     """Return the article ("paper") or its "supplement", with marks around what is computed.
 
     `origins.bare` removes the marks. If the run is not that of the paper, the text names the
@@ -100,7 +100,7 @@ def unlike_the_paper(datasets: Datasets) -> list[str]:
     """Return what differs from the run of the paper: parameters, or numbers that are missing."""
     judged = counted(datasets["claims"])
     unasked = [claim["reason"] for claim in judged if claim["verdict"] == "not asked"]
-    return paper.differences(datasets) or list(dict.fromkeys(unasked))
+    return paper.changed_parameters(datasets) or list(dict.fromkeys(unasked))
 
 
 def origins_of(name: str, datasets: Datasets) -> list[origins.Origin]:

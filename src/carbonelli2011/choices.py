@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from carbonelli2011 import claims
-from carbonelli2011.paper import TABLE_1, differences, of_paper, printed_table
+from carbonelli2011.paper import TABLE_1, changed_parameters, of_paper, printed_table
 from carbonelli2011.stages import (
     apparent_restitution,
     continuation,
@@ -109,7 +109,7 @@ def other_axes(
 
 def choices(data: Datasets) -> Iterator[Choice]:
     """All other choices; none if the run is not that of the paper."""
-    if differences(data):
+    if changed_parameters(data):
         return
     axes = (
         (ALONG_RATIO, [0.5, 2, 5], [100, 200, 1e4]),

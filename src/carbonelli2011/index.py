@@ -24,18 +24,18 @@ SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 """Parts with claims that belong to no single figure or table."""
 
 
-def written(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = False) -> dict:
+def pages(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = False) -> dict:
     """Return all texts and pages of a run, by the names of their files.
 
     `entries` are the registered figures, tables and datasets by name. On a `site`, the explorer and
     the documentation are next to the pages.
     """
-    marked = {name: article.written(name, datasets) for name in ("paper", "supplement")}
+    marked = {name: article.text(name, datasets) for name in ("paper", "supplement")}
     origin = {name: article.origins_of(name, datasets) for name in marked}
-    evidence = filled_in("html", datasets, entries, name="claims", site=site)
+    evidence = list_of_figures("html", datasets, entries, name="claims", site=site)
     found = {
-        "figures/README.md": filled_in("md", datasets, entries),
-        "index.html": filled_in("html", datasets, entries, site=site),
+        "figures/README.md": list_of_figures("md", datasets, entries),
+        "index.html": list_of_figures("html", datasets, entries, site=site),
         "claims.html": framed(evidence, "claims", [("", "The claims and the evidence")]),
         "numbers.html": numbers(marked, origin, datasets, article.TEMPLATES),
     }
@@ -45,7 +45,7 @@ def written(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = Fal
     return found
 
 
-def filled_in(
+def list_of_figures(
     kind: str,
     datasets: Datasets,
     entries: Mapping[str, Mapping],

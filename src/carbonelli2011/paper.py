@@ -165,7 +165,7 @@ AXES = {
 """Our choices on which sentences of the article rest."""
 
 
-def differences(datasets: Datasets) -> list[str]:
+def changed_parameters(datasets: Datasets) -> list[str]:
     """Return a line for each parameter that differs from the run that the article is about.
 
     A line begins with the names of the datasets that have the parameter.

@@ -939,7 +939,7 @@ def main(project: Project, arguments: list[str]) -> int:
         # No file of somebody else lies there.
         is_zip = paths[-1].is_file()
         folder = paths[-1].with_suffix(".diff") if is_zip else folders[-1] / "diff"
-        return written(project, report, folder, sys.stdout)
+        return save_report(project, report, folder, sys.stdout)
 
 
 def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
@@ -960,7 +960,7 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
         print(*found, sep="\n", file=sys.stderr)
         return STATUS["not comparable"]
     stream = sys.stderr if report.status else sys.stdout
-    return written(project, report, results / "diff", stream)
+    return save_report(project, report, results / "diff", stream)
 
 
 def pictures_of(project: Project, report: Report, file: str) -> list[bytes]:
@@ -976,7 +976,7 @@ def pictures_of(project: Project, report: Report, file: str) -> list[bytes]:
     return [path.read_bytes() for path in paths if path.is_file()]
 
 
-def written(project: Project, report: Report, folder: Path, stream: TextIO) -> int:
+def save_report(project: Project, report: Report, folder: Path, stream: TextIO) -> int:
     """Print a report, and save it as a text and as a page with the pictures of both sides.
 
     Returns the exit status.

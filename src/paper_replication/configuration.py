@@ -140,7 +140,7 @@ def datasets(section: Mapping) -> dict[str, str]:
     return {name: f"results/figures/{name}.nc" for name in names(section)}
 
 
-def parameters(section: Mapping) -> dict[str, dict]:
+def computed_from(section: Mapping) -> dict[str, dict]:
     """The title and the parameters of each dataset of a stage."""
     return {
         name: {key: value for key, value in section[name].items() if key not in SHOWN_BY}

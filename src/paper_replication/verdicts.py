@@ -259,7 +259,7 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
     literal = readings[0].found if readings else None
     found = {
         "found": np.nan if literal is None else literal,
-        "condition": listed(readings),
+        "condition": condition_texts(readings),
     }
     if readings and not numbers:
         found["decided_by"] = "algebra"
@@ -276,10 +276,10 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
     return found | {"verdict": "partly", "own_sense": sense}
 
 
-def listed(readings: list[Reading]) -> list[str]:
+def condition_texts(readings: list[Reading]) -> list[str]:
     """Print readings, each with its number and the bound; of several, the first is the literal one.
 
-    >>> listed([within("Eq. 8", 0.0297, 0.01), within("Eq. 5", 0.000132, 0.01)])
+    >>> condition_texts([within("Eq. 8", 0.0297, 0.01), within("Eq. 5", 0.000132, 0.01)])
     ['literally, no: Eq. 8 (2.97 %, at most 1 %)', 'yes: Eq. 5 (0.0132 %, at most 1 %)']
     """
     texts = []

@@ -9,11 +9,11 @@ sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 with reading(snakemake.input) as sources:
     from project import PROJECT
 
-    from carbonelli2011.index import written
+    from carbonelli2011.index import pages
     from paper_replication.datasets import read, save_record
 
     results = Path(snakemake.output.index).parent
     datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
-    for name, text in written(datasets, snakemake.params.entries).items():
+    for name, text in pages(datasets, snakemake.params.entries).items():
         (results / name).write_text(text, encoding="utf-8", newline="\n")
     save_record(snakemake, sources, PROJECT)

@@ -172,7 +172,7 @@ def home(app, failure):
     config = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
     stages = [section for section in config.values() if isinstance(section, dict)]
     entries = {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
-    texts = index.written({path.stem: read(path) for path in names}, entries, site=True)
+    texts = index.pages({path.stem: read(path) for path in names}, entries, site=True)
     for name in (name for name in texts if name.endswith(".html")):
         # The tables in Markdown are pages of the site.
         page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', texts[name])

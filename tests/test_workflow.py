@@ -233,6 +233,17 @@ def test_rules_list_the_modules_and_templates_that_their_scripts_read(stubs):
     assert {file for file in inputs["article"] if file.endswith(".j2")} == templates
 
 
+def test_parameters_without_an_orbit_are_one_line_with_the_name_of_the_figure(tmp_path):
+    (tmp_path / "mine.yaml").write_text("error_thresholds: {fig14: {amplitude: 0.3}}", "utf-8")
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+    command += ["--cores", "1", "--configfile", "mine.yaml", "--", "fig14"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    (log,) = (tmp_path / "results/logs").glob("*.log")
+    (line,) = log.read_text("utf-8").splitlines()
+    assert done.returncode == 1 and line in done.stderr
+    assert line.startswith("configuration: fig14: 1-T orbits on stiff contacts need Λ >= 0.666398")
+
+
 def test_a_failed_figure_does_not_stop_others(fresh):
     draw = fresh.path / "workflow/scripts/draw.py"
     draw.write_text("if 'fig16' in snakemake.output[0]:\n    1 / 0\n" + draw.read_text(), "utf-8")

@@ -212,14 +212,18 @@ def save_stage(
 
     `stage` has the function of each dataset. A function takes the parameters of its entry in the
     configuration, and as keywords those settings of the run that are among its arguments. A dataset
-    records only these.
+    records only these. The name of a dataset is a note of a ValueError of its function.
     """
     for name in snakemake.params.entries:
         entry = dict(snakemake.params.entries[name])
         title = entry.pop("title")
         arguments = signature(stage[name]).parameters
         settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
-        dataset = computed(stage[name], entry | settings)
+        try:
+            dataset = computed(stage[name], entry | settings)
+        except ValueError as error:
+            error.add_note(name)
+            raise
         save(dataset, snakemake.output[name], title, parameters(dataset), sources, project)
     save_record(snakemake, sources, project)
 

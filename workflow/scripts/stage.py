@@ -9,7 +9,11 @@ sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 with reading(snakemake.input) as sources:
     from project import PROJECT
 
+    from bouncing_ball.orbits import NoOrbit
     from paper_replication.datasets import save_stage
 
     stage = import_module(f"carbonelli2011.stages.{snakemake.params.stage}")
-    save_stage(stage.STAGE, snakemake, sources, PROJECT)
+    try:
+        save_stage(stage.STAGE, snakemake, sources, PROJECT)
+    except NoOrbit as error:
+        sys.exit(f"configuration: {': '.join([*error.__notes__, str(error)])}")

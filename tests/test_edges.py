@@ -405,6 +405,6 @@ def test_another_release_gives_true_pages():
     assert_texts_are_true(found)
     datasets = reference() | found
     datasets["claims"] = judge(datasets).assign_attrs(reference()["claims"].attrs)
-    page = re.sub(r"(?s)<style>.*?</style>", "", index.filled_in("html", datasets, ENTRIES))
+    page = re.sub(r"(?s)<style>.*?</style>", "", index.list_of_figures("html", datasets, ENTRIES))
     assert not re.search(r"\bnan\b|\binf\b|\bNone\b(?! of)|\w+Error\b", page)
     assert article.text("paper", datasets).startswith("# Article of another run")

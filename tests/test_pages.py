@@ -71,7 +71,7 @@ def read(texts) -> dict[str, Page]:
 @pytest.fixture(scope="module")
 def listed(data) -> str:
     """The list of figures."""
-    return index.filled_in("md", data, ENTRIES)
+    return index.list_of_figures("md", data, ENTRIES)
 
 
 # All pages
@@ -198,7 +198,7 @@ def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):
     claims = data["claims"]
     new = claims.isel(claim=[0]).assign_coords(claim=["new"]).assign(beside=("claim", ["fig17"]))
     every = data | {"fig17": data["fig14"], "claims": xr.concat([claims, new], "claim")}
-    text = index.filled_in("html", every, ENTRIES | {"fig17": entry})
+    text = index.list_of_figures("html", every, ENTRIES | {"fig17": entry})
     found = Page(text[text.index('<section id="fig17"') : text.index("</main>")])
     assert "Figure 17: <another>" in found.texts
     assert found.places["alt"][0] == "Figure 17" and "Another & more." in found.texts
@@ -210,8 +210,8 @@ def test_a_claim_that_this_run_cannot_judge_says_why(data, read):
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
     unasked = sum(by["not asked"] for by in judgements.counts(changed["claims"]).values())
     reason = "other parameters: fig14.n is 2 instead of 1"
-    page = Page(index.filled_in("html", changed, ENTRIES))
-    evidence = Page(index.filled_in("html", changed, ENTRIES, name="claims"))
+    page = Page(index.list_of_figures("html", changed, ENTRIES))
+    evidence = Page(index.list_of_figures("html", changed, ENTRIES, name="claims"))
     assert f"This run cannot judge it: {reason}" in evidence.texts
     assert f"This run cannot judge {unasked} of these claims" in page.texts
     assert any("above 82; this run has other parameters." in text for text in page.texts)
@@ -223,7 +223,7 @@ def test_the_answer_is_not_given_for_other_orbits(data, read):
     assert any(text.startswith(answer) for text in read["index.html"].texts)
     changed = data | {"validity_map": with_parameters(data["validity_map"], advised=9.0)}
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
-    page = Page(index.filled_in("html", changed, ENTRIES))
+    page = Page(index.list_of_figures("html", changed, ENTRIES))
     assert "This run has other parameters than the paper" in page.texts
     assert not any("natural frequency of the contact is" in text for text in page.texts)
 

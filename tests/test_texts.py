@@ -95,7 +95,7 @@ def test_counts_of_readme_are_those_of_the_datasets():
     needed = data["validity_map"].enough_from.sel(quantity="summit")
     assert f"ϖ = {texts.fixed(needed.max(), 0)}" in readme
     stable = data["validity_map"].stable.sum().item()
-    assert f"a grid of {stable} n-T orbits that are stable in both models" in readme
+    assert f"We checked {stable} n-T orbits that are stable in both models" in readme
 
 
 def two_digits(values) -> list[float]:

@@ -296,7 +296,7 @@ def test_code_that_differs_from_the_acceptance_is_listed_and_marked_if_main_has_
     git(project.top, "branch", "-f", "main")
     assert changed(project) == "changed code: src/model.py (also on main)"
     run(project)
-    assert accept(project) == []
+    assert accept(project) == ["figures/fig14.nc", "figures/claims.nc"]
     assert changed(project) == SAME
 
 
@@ -660,6 +660,26 @@ def test_what_one_processor_accepts_is_green_on_each(project, tmp_path, what, fi
         assert (tmp_path / name).read_bytes() == (project.top / "figures" / name).read_bytes()
 
 
+def test_a_dataset_names_the_code_of_today_and_keeps_each_number_as_it_was_accepted(project):
+    path = project.top / "figures/fig14.nc"
+    run(project, PROCESSORS[0])
+    accept(project)
+    before = datasets.read(path)
+    edit(project, "src/model.py")
+    commit(project.top)
+    run(replace(project, license="another"), PROCESSORS[1])
+    today = replace(project, license="another")
+    assert accept(today) == ["figures/fig14.nc", "figures/claims.nc"]
+    after = datasets.read(path)
+    xr.testing.assert_equal(after, before)
+    assert (after.max_height.values != PROCESSORS[1]).any()
+    assert after.license == "another" and after.code != before.code
+    assert after.computed_on == before.computed_on
+    commit(project.top)
+    assert accept(today) == []
+    assert lines(today) == []
+
+
 def reference(project):
     """The files of the reference; git would commit no others."""
     listed = provenance.git(project.top, "ls-files", "--cached", "--others", "--exclude-standard")
@@ -675,7 +695,7 @@ def test_another_python_alone_changes_no_record(project, monkeypatch):
     edit(project, "src/model.py")
     commit(project.top)
     run(project)
-    assert accept(project) == []
+    accept(project)
     assert "3.99.0" in (project.top / compare.ACCEPTED).read_text("utf-8")
 
 

@@ -4,11 +4,13 @@ import json
 import os
 import platform
 import py_compile
+import re
 import sys
 from dataclasses import replace
 from importlib import import_module
 from types import SimpleNamespace
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -61,6 +63,21 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, project, tmp_pat
     assert saved.attrs["computed_on"].startswith(platform.system())
     assert os.listdir(path.parent) == ["fig02.nc"]
     assert small.phase.attrs == {}
+
+
+def test_a_file_is_as_the_conventions_demand_that_it_names(project, tmp_path):
+    """CF-1.11, Sections 2.3, 2.5.1, 2.6 and 3.1, of which a checker of CF names no fault either."""
+    about = replace(project, references="A paper", source="code 1.0", license="BSD-3-Clause")
+    data = xr.Dataset({"phase": ("amplitude", [0.5, np.nan])}, {"amplitude": [1.0, 2.0]})
+    datasets.save(data, tmp_path / "fig99.nc", "Title", {}, NOTHING, about)
+    with netCDF4.Dataset(tmp_path / "fig99.nc") as file:
+        assert file.Conventions == "CF-1.11"
+        assert all(getattr(file, name) for name in ("title", "references", "source", "license"))
+        for name, variable in file.variables.items():
+            assert re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name)
+            assert variable.long_name and variable.units in ("1", "rad")
+            is_coordinate = name in file.dimensions
+            assert not (is_coordinate and "_FillValue" in variable.ncattrs())
 
 
 def test_a_variable_without_description_is_refused(small, project, tmp_path):

@@ -47,11 +47,13 @@ from paper_replication.datasets import (
     common_attributes,
     plain,
     read,
+    to_netcdf,
     write,
 )
 from paper_replication.judgements import raised
 from paper_replication.provenance import (
     PACKAGES,
+    blob,
     content,
     contents_in,
     git,
@@ -776,8 +778,9 @@ def planned(project: Project, results: Path, inputs: Iterable[str]) -> Plan:
     """What `accept` has to write.
 
     If one file of a figure or a table is written, all files of its dataset are: then the reference
-    agrees on processors that round numbers differently. If all agree, they stay as they are, and
-    only the code and the libraries that gave them again are noted. Files that no rule makes any
+    agrees on processors that round numbers differently. If all agree, the numbers and the pictures
+    stay as they are, datasets get the attributes of today, which name their code, and the code and
+    the libraries that gave them again are noted. Files that no rule makes any
     more are removed if git tracks them and the record of the reference names them.
     """
     # Read before git says that it is committed, and before results are compared with it.
@@ -801,12 +804,18 @@ def planned(project: Project, results: Path, inputs: Iterable[str]) -> Plan:
         for file, (old, new) in accepted.items()
         if new.shows in changed and old.hash != new.hash
     }
+    contents: dict[str, bytes | None] = {file: (results / file).read_bytes() for file in after}
+    for file, (old, new) in accepted.items():
+        if isinstance(new.contents, xr.Dataset) and new.shows not in changed:
+            today = renewed(old.contents, new.contents)
+            if today and blob(today) != old.hash:
+                contents[file] = today
+                after[file] = blob(today)
     removed = [
         file
         for file in report.old.records
         if file not in made and git(project.checkout, "ls-files", str(project.top / file))
     ]
-    contents = {file: (results / file).read_bytes() for file in after}
     hashes = states(project, report, [*after, *removed], after)
     text = report.new.records[project.texts[0]]
     record = {
@@ -822,6 +831,20 @@ def planned(project: Project, results: Path, inputs: Iterable[str]) -> Plan:
     is_new = any(then.get(key) != now[key] for key in now)
     noted = f"{json.dumps(record, indent=0)}\n".encode() if is_new else None
     return Plan(contents | dict.fromkeys(removed), hashes, noted)
+
+
+def renewed(old: xr.Dataset, new: xr.Dataset) -> bytes | None:
+    """The numbers of a dataset with the attributes of another one, in which they agree; none if it
+    has them. What computed the numbers stays.
+    """
+    kept = old.attrs.keys() & {"computed_on", "versions"}
+    attributes = new.attrs | {name: old.attrs[name] for name in kept}
+    if old.attrs == attributes:
+        return None
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "renewed.nc")
+        to_netcdf(old.drop_encoding().assign_attrs(attributes), path)
+        return path.read_bytes()
 
 
 def states(

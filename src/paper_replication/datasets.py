@@ -10,7 +10,7 @@ Texts, integers and booleans agree only if they are equal.
 import json
 import os
 import platform
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -158,11 +158,18 @@ def save(
     )
     for name, variable in complete.variables.items():
         variable.attrs = attributes(variables[str(name)], variable.dtype)
-    # Small variables grow when compressed, because compression stores them in chunks.
-    large = [name for name, each in complete.variables.items() if each.nbytes > 8192]
-    packed = {name: {"zlib": True} for name in large if complete[name].dtype.kind in "fib"}
     with whole(path) as unfinished:
-        complete.to_netcdf(unfinished, engine="netcdf4", encoding=packed)
+        to_netcdf(complete, unfinished)
+
+
+def to_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write a dataset with all its attributes; coordinates have no fill value, as CF demands."""
+    encoding: dict[Hashable, dict] = {name: {"_FillValue": None} for name in dataset.coords}
+    for name, variable in dataset.variables.items():
+        # Small variables grow when compressed, because compression stores them in chunks.
+        if variable.nbytes > 8192 and variable.dtype.kind in "fib":
+            encoding.setdefault(name, {})["zlib"] = True
+    dataset.to_netcdf(path, engine="netcdf4", encoding=encoding)
 
 
 def common_attributes(project: Project) -> dict[str, str]:

@@ -91,6 +91,11 @@ def content(file: str | Path) -> str:
     text = Path(file).read_bytes()
     if Path(file).suffix not in (".png", ".nc"):
         text = text.replace(b"\r\n", b"\n")
+    return blob(text)
+
+
+def blob(text: bytes) -> str:
+    """The hash that git gives to a content."""
     return hashlib.sha1(b"blob %d\0" % len(text) + text, usedforsecurity=False).hexdigest()
 
 

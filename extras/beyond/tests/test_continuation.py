@@ -256,7 +256,7 @@ def test_limits_are_shown_in_a_line():
 
 def test_a_limit_that_is_missing_has_a_reason():
     elastic = repr(limits(Rigid(1.0)))
-    reason = "there is no saddle-node on the branch of orbits, which ends where amplitude = 1e-06"
+    reason = "no saddle-node is known: the branch of orbits is followed until amplitude = 1e-06"
     assert elastic == f"Limits: {reason} is reached; period doubling at Λ = 1"
     # r is 1 within rounding: the damper of this law has no force.
     integrated = kuwabara_kono(restitution=1.0, duration=0.01, speed=np.pi)
@@ -566,7 +566,7 @@ def test_without_a_goal_the_parameter_rises_to_ten_times_its_value_or_to_its_end
     assert follow(start).end == "amplitude = 20 is reached"
     assert follow(start, along="restitution").values[-1] == 1.0
     assert follow(start, points=3).end.startswith(
-        "the maximum of 3 points is reached; the last one is at"
+        "the maximum of 3 points is reached; the last one, at amplitude"
     )
 
 

@@ -160,6 +160,11 @@ class Ball:
         """Arguments (r, ϖ, ζ) of :func:`.one_ball.impacts`; None if loops cannot be used."""
         return None
 
+    @property
+    def has_two_ends(self) -> bool:
+        """Whether contacts end at one of two events, whichever comes first: see :class:`.Force`."""
+        return False
+
     def first_release(
         self,
         tau: Values,

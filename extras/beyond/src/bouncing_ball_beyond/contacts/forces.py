@@ -124,10 +124,16 @@ class Force(Ball):
             )
         if not values:
             return self
-        new = object.__new__(type(self))
-        own = {each.name: getattr(self, each.name) for each in fields(self)}
-        vars(new).update(own, values={**self.values, **values}, _origin=self._origin)
-        return new
+        return self._with(values={**self.values, **values}, _origin=self._origin)
+
+    def at_surface(self) -> Any:
+        """Return the law with contacts that end at p = 0, without checking it."""
+        return self._with(release="displacement")
+
+    def _with(self, **new: Any) -> Any:
+        law = object.__new__(type(self))
+        vars(law).update({each.name: getattr(self, each.name) for each in fields(self)}, **new)
+        return law
 
     @cached_property
     def _origin(self) -> Any:
@@ -271,11 +277,19 @@ class Force(Ball):
 
         It is positive in the contact and has a simple zero at its end: f, or p f(p, p′)/f(p, 0).
         """
-        near = np.where(np.real(p) > SURFACE, p, SURFACE)
-        force = self.force_at(near, v, a, given)
         if self.pulls or self.lag:
-            return force
-        return p * (force / self.force_at(near, 0 * v, a, given))
+            return self.force_at(np.where(np.real(p) > SURFACE, p, SURFACE), v, a, given)
+        return p * self.share(p, v, a, given)
+
+    def share(self, p: Values, v: Values, a: Values, given: Mapping) -> Values:
+        """f(p, p′)/f(p, 0), also at the surface."""
+        near = np.where(np.real(p) > SURFACE, p, SURFACE)
+        return self.force_at(near, v, a, given) / self.force_at(near, 0 * v, a, given)
+
+    @property
+    def has_two_ends(self) -> bool:
+        """Whether contacts end at p = 0, or before where the force changes its sign."""
+        return self.release == "force" and not (self.lag or self.pulls)
 
     def own(self, given: Mapping) -> dict[str, Values]:
         return {name: given[name] for name in self.values}

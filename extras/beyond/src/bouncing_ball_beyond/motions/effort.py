@@ -1,5 +1,6 @@
 """Limit the work of a search, and report its progress."""
 
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -28,7 +29,8 @@ class Effort:
     evaluations : float
         Number of contacts for each ball after which the search raises `SearchEnded`.
     progress : callable, optional
-        Function that receives a line of text, between steps that are `EVERY` seconds apart.
+        Function that receives a line of text, between steps that are `EVERY` seconds apart. By
+        default the lines go to the standard error if it is a terminal.
     spent : int
         Number of contacts so far.
     balls : int
@@ -70,3 +72,5 @@ class Effort:
         self.told = time.monotonic()
         if self.progress:
             self.progress(f"{self.what}: {text}")
+        elif sys.stderr.isatty():
+            print(f"{self.what}: {text}", file=sys.stderr)

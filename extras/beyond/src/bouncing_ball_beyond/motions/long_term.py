@@ -630,7 +630,8 @@ def motion_of(
         Number of impacts after which the search for a repetition ends. It is rounded up to a
         multiple of 25.
     progress : callable, optional
-        Function that receives a line of text every two seconds, such as ``print``.
+        Function that receives a line of text every two seconds, such as ``print``. By default
+        the lines appear in a terminal only.
 
     Returns
     -------

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from bouncing_ball_beyond.periodic.equations import (
     CHANGES,
     KINDS,
+    SINGULAR,
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
@@ -20,6 +21,7 @@ from bouncing_ball_beyond.periodic.equations import (
 from bouncing_ball_beyond.periodic.march import (
     AT_GOAL,
     CLOSED,
+    TOO_FAST,
     Start,
     ends_at,
     march,
@@ -27,6 +29,7 @@ from bouncing_ball_beyond.periodic.march import (
 )
 from bouncing_ball_beyond.periodic.search import single
 from bouncing_ball_beyond.periodic.special_orbits import crossings_of, divided, halved_at, located
+from bouncing_ball_beyond.periodic.switches import SWITCH, SWITCHED, beyond_switch, switch_of
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -250,9 +253,11 @@ def followed(
     z, found = np.empty((2, 0))
     if len(crossings.row):
         z, found = located(start.equations, crossings)
-    branches = []
+    branches: list[Any] = []
+    switches: list[tuple] = []
     for i, (path, end) in enumerate(steps):
         equations = single(start.equations, i)
+        stop = len(path.z) if end in (TOO_FAST, "lost release") else 0
         passed: list[tuple] = []
         for j in np.flatnonzero(crossings.row == i):
             kind = str(crossings.kind[j])
@@ -273,6 +278,7 @@ def followed(
         if ends:
             passed = passed[: ends[0] + 1]
             (number, *_), last = passed[-1]
+            stop = number + 2 if last.kind == "lost release" else 0
             orbits = np.vstack([orbits[: number + 1], last.z])
             why = KINDS[last.kind].end if last.kind in KINDS else ""
             end = f"{last.kind} at {_place(equations, last.z)}" + (why and f": {why}")
@@ -285,9 +291,38 @@ def followed(
             passed = [each for each in passed if each[0][0] + 1 < len(orbits)]
         else:
             end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
+        switch = switch_of(equations, path.z[:stop]) if stop else None
+        if stop and not switch and equations.at_switch(path.z[[stop - 1]]):
+            several = "curves and orbits with several impacts are not followed across it"
+            end = f"{SWITCH} near {_place(equations, orbits[-1], 7)}: {several}"
+        if switch:
+            before, at, ahead = switch
+            # Beyond the switch, the contacts of this part of the branch end too late.
+            passed = [
+                each
+                for each in passed
+                if each[0][0] + 1 < len(before)
+                or equations.surface_share(each[1].z[np.newaxis])[0] > SWITCHED
+            ]
+            passed.append(((len(before),), equations.orbit(at, SWITCH)))
+            orbits = np.vstack([before, at])
+            end = f"{SWITCH} at {_place(equations, at)}"
+            switches.append((i, at, ahead))
         special = tuple(each for _, each in passed)
         kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
         branches.append(kind_of_branch(equations, orbits, special, "", end))
+    for i, at, ahead in switches:
+        first = branches[i]
+        here = start.take([i])
+        beyond = beyond_switch(here.equations, at, ahead, here.goal)
+        if beyond.reasons[0] or len(first) + 2 > points:
+            why = beyond.reasons[0] or f"the maximum of {points} points is reached"
+            branches[i] = replace(first, end=f"{first.end}: {why}")
+            continue
+        (second,) = followed(beyond, window[[i]], [until[i]], points - len(first), "", grazings)
+        special = first.special + second.special
+        z = np.concatenate([first.z, second.z])
+        branches[i] = replace(first, z=z, special=special, end=second.end)
     return branches
 
 
@@ -309,7 +344,14 @@ def _in_words(
     if end == CLOSED:
         return end
     if end != AT_GOAL:
-        return f"{end}; the last one is at {_place(equations, z)}"
+        last = equations.orbit(z)
+        tests = equations.tests(z[np.newaxis], last._linear)[0, SINGULAR]
+        nearest = equations.kinds[SINGULAR][int(np.abs(tests).argmin())]
+        size = abs(last.multipliers[0])
+        return (
+            f"{end}; the last one, at {_place(equations, z)}, has a Floquet multiplier of modulus"
+            f" {size:.3g}, and the next event of its impacts is a {nearest}"
+        )
     values = z[equations.size :]
     j = np.flatnonzero((values == window).any(axis=0))[-1]
     name = equations.along[j].name

@@ -30,7 +30,7 @@ from bouncing_ball_beyond.periodic.equations import (
     alone,
 )
 from bouncing_ball_beyond.periodic.instants import closing_speeds, folds, others, where_begun
-from bouncing_ball_beyond.periodic.march import newton
+from bouncing_ball_beyond.periodic.march import CLOSED, newton
 from bouncing_ball_beyond.periodic.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.periodic.search import near_instants, rows_of, shortest_contacts
 from bouncing_ball_beyond.periodic.starts import STARTS, Task
@@ -64,7 +64,7 @@ def follow(
     - period doubling: orbits of twice the period;
     - period halving: orbits of half the period;
     - grazing of a flight: orbits with one more impact;
-    - grazing of a release, Neimark-Sacker: the branch that contains the orbit.
+    - grazing or switch of a release, Neimark-Sacker: the branch that contains the orbit.
 
     Parameters
     ----------
@@ -471,8 +471,12 @@ def _followed(equations: OrbitEquations, z: NDArray) -> list[tuple[float, float]
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
     """First special orbit of a kind, or an OrbitNotFound with the reason why the branch ends."""
     of_kind = (each for each in special if each.kind == kind)
-    where = f"at the {end}" if end.startswith(tuple(KINDS)) else f"where {end}"
-    why = f"there is no {kind} on the branch of orbits, which ends {where}"
+    if end.startswith(tuple(name for name in KINDS if KINDS[name].end)):
+        why = f"there is no {kind} on the branch of orbits, which ends at the {end}"
+    elif end.startswith(CLOSED):
+        why = f"there is no {kind} on the branch of orbits: {end}"
+    else:
+        why = f"no {kind} is known: the branch of orbits is followed until {end}"
     return next(of_kind, OrbitNotFound(why))
 
 

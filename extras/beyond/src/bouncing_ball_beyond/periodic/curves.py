@@ -24,6 +24,7 @@ from bouncing_ball_beyond.periodic.equations import (
 from bouncing_ball_beyond.periodic.forms import SUCH
 from bouncing_ball_beyond.periodic.march import Start, newton, unit
 from bouncing_ball_beyond.periodic.paths import path_of, usual_range
+from bouncing_ball_beyond.periodic.switches import SWITCH
 
 OTHER = 1e-3
 """Largest change that Newton's method may make to a start, relative to 1 + max |z|.
@@ -97,7 +98,8 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
             f"along = {brief(along)}: must be the names of two different parameters, such as"
             " ('amplitude', 'restitution'); 'frequency' already changes the amplitude"
         )
-    allowed = KINDS.keys() - {"lost release", "vanishing flight", "grazing of an impact"}
+    # The equations of a curve are singular where branches end, and at a switch of a release.
+    allowed = {kind for kind in KINDS if not KINDS[kind].end} - {SWITCH} | {"period halving"}
     if special.kind not in allowed:
         raise OrbitNotFound(
             f"kind = {special.kind!r}: a curve must start at a special orbit of a branch:"

@@ -56,6 +56,12 @@ therefore cause a value of 3e-7.
 At half: 1005 of 1020 orbits next to saddle-nodes are found, instead of 1011. At twice: 1015.
 """
 
+AT_SURFACE = 1e-11
+"""q = p^{1/m} below which a contact ends at p = 0. Rounding gives values up to about 1e-15."""
+
+AT_SWITCH = 1e-6
+"""Largest p and f(p, p′)/f(p, 0) of a switch of a release that is not located."""
+
 LASTING = 4 * np.pi
 """T of two free oscillations. Above this T, step lengths count relative changes of T.
 
@@ -506,9 +512,35 @@ class OrbitEquations:
         """
         if self.ball.has_duration:
             linear = self.linearized(z) if linear is None else linear
-            return linear.derivatives[..., 0, 2].min(axis=-1)
+            rates = linear.derivatives[..., 0, 2].min(axis=-1)
+            if not self.ball.has_two_ends:
+                return rates
+            # At p = 0 the rate is proportional to the force, except if rounding makes p negative.
+            gap = (flights or self.ends(z)).gap
+            law: Any = self.ball
+            depth = np.abs(gap).max(axis=-1) ** (1 / law.root)
+            return np.where(depth < AT_SURFACE, self.surface_share(z), rates)
         flights = flights or self.ends(z)
         return flights.speed.min(axis=-1)
+
+    def surface_share(self, z: NDArray) -> NDArray:
+        """Smallest f(p, p′)/f(p, 0) at the ends of the contacts, shape (rows,).
+
+        It is 0 if the force ends a contact, and negative if the force already ended it.
+        """
+        x, ball, amplitude, table = self.split(z)
+        law: Any = ball
+        ends = self.ends(z)
+        given = {**law.parameters, "u": x[..., 1]}
+        load = 1 + amplitude * table(ends.leaves, 2)
+        return law.share(-ends.gap, -ends.speed, load, given).min(axis=-1)
+
+    def at_switch(self, z: NDArray) -> bool:
+        """Whether p and f nearly vanish together at the end of a contact of the orbit z."""
+        if not self.ball.has_two_ends:
+            return False
+        near = np.abs(self.ends(z).gap).min() < AT_SWITCH
+        return bool(near and self.surface_share(z)[0] < AT_SWITCH)
 
     def halves(self, z: NDArray) -> NDArray:
         """First half of each orbit minus its second half, shape (rows, kq/2).
@@ -557,7 +589,9 @@ class OrbitEquations:
         release = self.least_release(linear, z, ends)
         # A ball without speed leaves the table if the table falls faster than the ball: δ″ > 0.
         falls = (ends.amplitude * ends.table(ends.leaves, 2) < -1).all(axis=-1)
-        leaving = (release > 0) | ((release == 0) & falls)
+        # At a switch of a release p and f vanish within rounding, and the ball leaves with δ′ > 0.
+        least = -AT_SWITCH if self.ball.has_two_ends else 0.0
+        leaving = (release > least) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
         obstacles = {
             "a contact or a flight would end before it begins": lasting.all(axis=-1),
@@ -966,6 +1000,7 @@ KINDS = {
     "Neimark-Sacker": Kind(lambda equations, z, linear: 1 - linear.trace_and_determinant[1]),
     "grazing of a flight": Kind(lambda equations, z, linear: equations.clearance(z)),
     "grazing of a release": Kind(lambda equations, z, linear: equations.contact_clearance(z)),
+    "switch of a release": Kind(lambda equations, z, linear: equations.surface_share(z)),
     "vanishing flight": Kind(
         lambda equations, z, linear: linear.flights.min(axis=1),
         "the contacts before and after a flight merge",

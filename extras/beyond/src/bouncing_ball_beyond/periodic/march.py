@@ -95,7 +95,7 @@ LARGEST_TURN = 0.3
 At half: 30 % more points. At twice: 11 % fewer.
 """
 
-STALLED = 1e-6
+STALLED = 1e-4
 """Share of the steps in all unknowns but T below which a branch ends: contacts last ever longer,
 and nothing else changes. The ball then no longer leaves the table, or no longer hits it.
 """
@@ -111,6 +111,9 @@ At half and at twice: no effect.
 
 AT_GOAL = "the end of the window"
 """Reason for the end of a branch: it left the window of the parameters."""
+
+TOO_FAST = "the orbits change too fast to be followed"
+"""Reason for the end of a branch: its steps became shorter than `SHORTEST_STEP`."""
 
 CLOSED = "the branch is closed: it is back at its start"
 """Reason for the end of a branch: it returned to its start."""
@@ -439,7 +442,7 @@ def march(
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
                 ends[rows[j]] = f"the maximum of {points} points is reached"
         for j in np.flatnonzero(step < SHORTEST_STEP):
-            ends[rows[j]] = ends[rows[j]] or "Newton's method finds no further orbit"
+            ends[rows[j]] = ends[rows[j]] or TOO_FAST
         going = np.array([not ends[row] for row in rows])
         if not going.all():
             rows = rows[going]

@@ -67,7 +67,7 @@ def orbit(
         Number of contacts after which the search for one ball ends.
     progress : callable, optional
         Function that receives a line of text, such as ``print``: every two seconds, or when a step
-        of the search that takes longer has ended.
+        of the search that takes longer has ended. By default the lines appear in a terminal only.
 
     Returns
     -------

@@ -11,6 +11,7 @@ from bouncing_ball_beyond.periodic.equations import OrbitEquations, OrbitNotFoun
 from bouncing_ball_beyond.periodic.forms import one_impact_more
 from bouncing_ball_beyond.periodic.march import Solution, Start, newton, tangents, unit
 from bouncing_ball_beyond.periodic.search import single
+from bouncing_ball_beyond.periodic.switches import SWITCH, at_surface, beyond_switch
 
 NEAREST = 1e-9
 """Relative distance from a period doubling, in the parameter, below which rounding hides orbits.
@@ -102,6 +103,14 @@ def _ordinary_start(task: Task) -> Start:
     reasons = np.full(len(task.z), "", object)
     _refuse(reasons, ahead == 0, task, "{place} is already the value of the orbit", ahead)
     return Start(task.equations, task.z, direction, task.goal, reasons)
+
+
+def _switch_start(task: Task) -> Start:
+    """Start branches with the other end of the contact at switches of a release."""
+    direction = tangents(at_surface(task.equations), task.z)
+    ahead = task.goal - task.z[:, -1]
+    direction = direction * np.sign(ahead * direction[:, -1])[:, np.newaxis]
+    return beyond_switch(task.equations, task.z, direction, task.goal)
 
 
 def _fold_start(task: Task) -> Start:
@@ -214,6 +223,7 @@ def _doubled_start(task: Task) -> Start:
 STARTS = {
     "": _ordinary_start,
     "grazing of a release": _ordinary_start,
+    SWITCH: _switch_start,
     "Neimark-Sacker": _ordinary_start,
     "saddle-node": _fold_start,
     "period doubling": _doubled_start,

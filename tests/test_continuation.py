@@ -124,6 +124,39 @@ def test_the_special_points_of_figure_8():
     assert 0 < end - permanent_contact(2.0, zeta) < 6.4e-7
 
 
+LAID = [(0.65, 10.0, 0.9904, 1.1083), (0.85, 10.0, 0.9901, 1.0433), (0.65, 100.0, 0.9999, 1.0013)]
+"""r, ϖ, and Λ at the ends of the first range of stable orbits from permanent contact."""
+
+
+@pytest.mark.parametrize(("r", "ratio", "first", "last"), LAID)
+def test_a_ball_near_an_orbit_of_a_long_contact_stays_there(r, ratio, first, last):
+    """By an integration that shares nothing; Newton's method finds the same orbit."""
+    zeta = independent.restitution_to_damping(r)
+    family = Family(1, Contact(ratio, zeta))
+    amplitude, duration = continuation.laid_ranges(family, 1.3)[0]
+    assert amplitude.round(4).tolist() == [first, last]
+    y = family.of_duration(np.array([duration.mean()]))
+    again = continuation.correct(family, y * (1 + 1e-4), continuation.at_amplitude(y[0]))
+    np.testing.assert_allclose(again, y, rtol=1e-7)
+    size, phase, velocity = (each.item() for each in y[:3])
+    distances = []
+    landing, speed = phase, velocity + 1e-5
+    for _ in range(8):
+        cycle = independent.cycle(ratio, zeta, "displacement", size, landing, speed)
+        landing, speed = landing + cycle.time, cycle.velocity
+        distances.append(abs(speed - velocity) + abs(np.angle(np.exp(1j * (landing - phase)))))
+    # Half of the disturbance.
+    assert distances[-1] < 5e-6
+
+
+def test_a_branch_from_permanent_contact_may_have_no_stable_orbits():
+    for n, ratio in [(2, 10.0), (3, 2.0)]:
+        contact = Contact.of_restitution(ratio, 0.85)
+        assert continuation.laid_ranges(Family(n, contact), 1.5).shape == (0, 2, 2)
+    with pytest.raises(ValueError, match="needs the displacement release"):
+        continuation.laid_ranges(Family(1, Contact.of_restitution(10.0, 0.65, "force")), 1.5)
+
+
 @pytest.mark.parametrize(
     ("n", "ratio", "release", "amplitude_max"),
     [(1, 2.0, "displacement", 1.3), (2, 1e4, "displacement", 1.5), (1, 8.0, "force", 1.4)],

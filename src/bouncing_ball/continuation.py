@@ -477,6 +477,70 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
     return Branch(orbits, sorted(found, key=lambda each: each.place), ends)
 
 
+SCANNED = 1000
+"""Number of durations at which `laid_ranges` looks for stable orbits: it may miss ranges in which
+τ_b changes by less than 0.02.
+"""
+
+
+def laid_ranges(family: Family, amplitude_max: float) -> NDArray:
+    """Ranges of stable, admissible orbits on the branch that begins at permanent contact.
+
+    These orbits have long contacts; a ball that is laid on the table may end on them. The branch is
+    followed in closed form (`Family.of_duration`), from flights of `LEAST_FLIGHT` to the first
+    amplitude above `amplitude_max`.
+
+    Returns
+    -------
+    ndarray, shape (ranges, 2, 2)
+        Λ and τ_b (second axis) at both ends of each range (last axis), the longest contacts first.
+
+    Raises
+    ------
+    ValueError
+        If the contact has the force release: then no contact pulls, and this branch is not known.
+
+    Examples
+    --------
+    >>> contact = Contact.of_restitution(10.0, 0.65)
+    >>> laid_ranges(Family(1, contact), 1.2)[:, 0].round(4).tolist()
+    [[0.9904, 1.1083]]
+    """
+    if family.contact.release != "displacement":
+        raise ValueError("the branch from permanent contact needs the displacement release")
+
+    def orbits(flight):
+        return family.of_duration(family.period - flight)
+
+    def are_followed(flight):
+        y = orbits(flight)
+        stable = family.possible(y) & is_stable(*family.trace_and_determinant(y))
+        stable[stable] = family.admissible(y[:, stable])
+        return stable
+
+    def edge(inside, outside):
+        for _ in range(50):
+            middle = (inside + outside) / 2
+            if are_followed(np.array([middle]))[0]:
+                inside = middle
+            else:
+                outside = middle
+        return inside
+
+    flight = np.geomspace(LEAST_FLIGHT, 0.99 * family.period, SCANNED)
+    beyond = np.flatnonzero(orbits(flight)[0] > amplitude_max)
+    flight = flight[: beyond[0]] if beyond.size else flight
+    followed = np.concatenate([[False], are_followed(flight), [False]])
+    ranges = []
+    for first, after in np.flatnonzero(np.diff(followed)).reshape(-1, 2):
+        longest = edge(flight[first], flight[first - 1]) if first else flight[0]
+        last = flight[after - 1]
+        shortest = edge(last, flight[after]) if after < flight.size else last
+        edges = np.array([longest, shortest])
+        ranges.append([orbits(edges)[0], family.period - edges])
+    return np.array(ranges).reshape(-1, 2, 2)
+
+
 def _tests(family: Family) -> dict[str, Callable[[NDArray], NDArray]]:
     """Test function of each kind of special point, which vanishes there."""
     functions = (family.saddle_node_test, family.period_doubling_test, family.clearance)

@@ -80,6 +80,7 @@ def text(name: str, datasets: Datasets) -> str:
         other_contacts=other_contacts(datasets["hypotheses"]),
         others_with_82=others_with_82(datasets["hypotheses"]),
         stable_ranges=measures.stable_ranges,
+        laid_ranges=measures.laid_ranges,
         permanent_contact=spring_damper.permanent_contact,
         holmes_period_doubling=restitution.holmes_period_doubling,
         period_doubling_height=restitution.period_doubling_height,

@@ -93,6 +93,12 @@ def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
     return [(low, high) for low, high in ranges[stable].tolist()]
 
 
+def laid_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
+    """Return the ranges of Λ with stable orbits of long contacts that the figure does not have."""
+    ranges = np.sort(branch["laid_amplitude"].dropna("laid").values, axis=1)
+    return [(low, high) for low, high in ranges.tolist()]
+
+
 def curve_errors(sweep: xr.Dataset) -> xr.DataArray:
     """Return the errors of the restitution model on the curves of Fig. 5, 6 or 10, by measure.
 

@@ -88,6 +88,14 @@ SYMBOLS = {
     "special_arclength": Variable(
         "arclength of the branch up to the special point, divided by the total arclength"
     ),
+    "laid": Variable("number of the stable range on the branch from permanent contact"),
+    "range_end": Variable("end of the stable range"),
+    "laid_amplitude": Variable(
+        "Λ at the ends of stable ranges on another branch than that of the figure, which begins at "
+        "permanent contact",
+        "Λ",
+    ),
+    "laid_contact_duration": Variable("contact duration at the ends of these ranges", "τ_b"),
     # Permanent contact
     "threshold_amplitude": Variable(
         "threshold of permanent contact", "Λ_SD, or Λ_F for the force release", "Eq. 33"

@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import Branch, End, bifurcations, branch
+from bouncing_ball.continuation import Branch, End, bifurcations, branch, laid_ranges
 from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family, NoOrbit
 from bouncing_ball.spring_damper import Contact, damping_ratio
@@ -37,6 +38,16 @@ def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
         return Branch(np.full((4, points), np.nan), [], (absent, absent))
 
 
+def other_ranges(family: Family, known: Branch, amplitude_max: float) -> NDArray:
+    """The stable ranges of the branch from permanent contact (`laid_ranges`), if the branch that is
+    known does not end there, and if contacts may pull.
+    """
+    is_known = "permanent contact" in {end.kind for end in known.ends}
+    if is_known or family.contact.release != "displacement":
+        return np.empty((0, 2, 2))
+    return laid_ranges(family, amplitude_max)
+
+
 def padded(values: list, count: int, fill) -> list:
     """A list that is filled up to a length."""
     return [*values, *[fill] * (count - len(values))]
@@ -55,8 +66,11 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     if all(np.isnan(each.orbits).all() for each in found):
         raise NoOrbit(found[0].ends[0].reason)
     count = max(len(each.special) for each in found)
+    pairs = zip(families, found, strict=True)
+    laid = [other_ranges(*pair, parameters["amplitude_max"]) for pair in pairs]
+    laid_count = max(1, *map(len, laid))
     rows = []
-    for family, each in zip(families, found, strict=True):
+    for family, each, ranges in zip(families, found, laid, strict=True):
         quantities = family.observables(each.orbits, QUANTITIES)
         multipliers = family.multipliers(each.orbits).T
         ratio = family.contact.frequency_ratio
@@ -72,11 +86,14 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
                 "special_phase": padded([point.orbit[1] for point in special], count, np.nan),
                 "special_contact_duration": padded(durations, count, np.nan),
                 "special_arclength": padded([point.place for point in special], count, np.nan),
+                "laid_amplitude": padded([*ranges[:, 0]], laid_count, [np.nan] * 2),
+                "laid_contact_duration": padded([*ranges[:, 1]], laid_count, [np.nan] * 2),
                 "end_kind": [end.kind for end in each.ends],
                 "end_reason": [end.reason for end in each.ends],
             }
         )
     axes = {"multiplier": ("point", "multiplier"), "special": ("special",), "end": ("end",)}
+    axes["laid"] = ("laid", "range_end")
     variables: dict[str, Any] = {"damping_ratio": zeta}
     for name in rows[0]:
         inner = axes.get(name.partition("_")[0], ("point",))
@@ -88,6 +105,8 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
             "point": np.arange(parameters["points"]),
             "multiplier": [0, 1],
             "special": np.arange(count),
+            "laid": np.arange(laid_count),
+            "range_end": ["longest contact", "shortest contact"],
             "end": ["unstable side", "stable side"],
         },
     )

@@ -1,12 +1,12 @@
 # make              sets up .venv, and computes every figure, table and text into results/
 # make test         the tests
-# make replication  removes results/, computes everything, and compares it with the reference
+# make replication  computes everything again, and compares it with the reference
 # make diff         the comparison alone; `snakemake --cores 2 fig14 diff` compares one figure
 
 # A VENV of the shell does not count: make VENV=/another/path
 VENV := .venv
 RUN := $(VENV)/bin/python -m
-SNAKEMAKE := $(RUN) snakemake --cores 2 --logger rich --
+SNAKEMAKE := $(RUN) snakemake --logger rich --cores 2
 ENVIRONMENT := sh ./environment.sh
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --no-emit-package bouncing-ball $(UPGRADE)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
@@ -53,7 +53,8 @@ accept: develop
 	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --quiet --ignore tests/test_edges.py
 	@$(SNAKEMAKE) $@
 
-replication: setup clean diff
+replication: setup
+	@$(SNAKEMAKE) --forceall diff
 
 # From nothing, with the code of numpy and OpenBLAS for another processor, one without AVX-512.
 test-processors: develop

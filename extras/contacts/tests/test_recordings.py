@@ -109,6 +109,12 @@ FILES = {
     + f"\n{TIMES[0]},1.2,{TIMES[1]},.9,.67,{TIMES[2]},.6,.67,{TIMES[3]},.4,.67",
     "Logger Pro, the latest run": "Latest: Time (s),Latest: Position (m),Latest: Velocity (m/s)\n"
     + track("{:.4f},{:.5f},0"),
+    "Logger Pro, a film": '"VideoAnalysis: Time (s)","VideoAnalysis: X (m)","VideoAnalysis: Y (m)",'
+    '"VideoAnalysis: Y Velocity (m/s)"\n' + track("{:.4f},0.31,{:.5f},0.2"),
+    "Logger Pro, two films in pixels": "VideoAnalysis: Time (s),VideoAnalysis: Y (pixels),"
+    "VideoAnalysis 2: Time (s),VideoAnalysis 2: Y (pixels)\n"
+    + track("{0:.4f},{1:.2f},{0:.4f},{1:.2f}", shown=lambda y: 100 + 700 * y),
+    "Logger Pro, a data set with a name": "Second drop: Time (s),Second drop: Y (m)\n" + track(),
     "Graphical Analysis, a data set": "Data Set 1:Time(s),Data Set 1:Position(m),"
     "Data Set 1:Velocity(m/s),Data Set 1:Acceleration(m/s²)\n" + track("{:.4f},{:.5f},0,0"),
     "Logger Pro, a run": "Run 1: Time (s),Run 1: Position (m),Run 1: Velocity (m/s),"
@@ -223,6 +229,8 @@ def test_columns_are_named_where_no_synonym_is_known(tmp_path, typed):
         fit(path, columns={"Weg": "y"})
     with pytest.raises(Refused, match="'Ort' is not known"):
         fit(path, columns={"2": "Ort"})
+    with pytest.raises(Refused, match="'Zeit' is not read, 'y' is position, 'Tempo' is not"):
+        fit(path, columns={"2": "y (m)"})
     path.write_text(numbers)
     assert fit(path, columns={"1": "t (s)", "2": "y (m)"}).result.endswith(said)
 
@@ -284,6 +292,8 @@ BALLS = {
     "golf,1,.6724\n,2,1.3448\n,3,2.0172\n",
     "in headings": "drop (m),rebound (m) (tennis),rebound (m) (golf)\n1,.5329,.6724\n"
     "2,1.0658,1.3448\n3,1.5987,2.0172\n",
+    "before headings": "tennis: h (m),tennis: h' (m),golf: h (m),golf: h' (m)\n1,.5329,1,.6724\n"
+    "2,1.0658,2,1.3448\n3,1.5987,3,2.0172\n",
     "in times": "ball,time (s)\ntennis,1\n,1.9\n,2.557\n,3.03661\ngolf,1\n,1.9\n,2.638\n,3.24316\n",
 }
 
@@ -354,7 +364,19 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
             "v,COR\n1,1e-300",
             "line 2: a restitution coefficient of 1e-300 below 'COR' is .* too small",
         ),
-        ('drop (mm),rebound (mm)\n"1,000","640"', "'1,000' below 'drop' is no number"),
+        ('drop (mm),rebound (mm)\n"1,000","640"', "'1,000' below 'drop' is .* thousands without"),
+        ('t (s),y (m)\n"0,1","0,64"', "'0,1' below 't' is .* decimals with a point"),
+        ("drop (mm);rebound (mm)\n1.234,5;640", "'1.234,5' below 'drop' is .* thousands without"),
+        ("drop (mm),rebound (mm)\n1'234.5,640", "\"1'234.5\" below 'drop' is .* thousands without"),
+        ("time\n2026-12-01T10:55:00.3\n", "'2026-12-01T10:55:00.3' below 'time' is .* in seconds"),
+        ("time,y\n1.12.2026 10:55,3\n", "'1.12.2026 10:55' below 'time' is .* in seconds"),
+        ("time\n36 in\n20", "'36 in' below 'time' is no number; a unit .* as in time .s."),
+        ("drop,rebound\n~36,20", "'~36' below 'drop' is no number; correct it"),
+        (
+            "Latest: Time (s),Latest: Position (m),VideoAnalysis: Time (s),VideoAnalysis: Y (m)\n"
+            + track("{0:.4f},{1:.5f},{0:.4f},{1:.5f}"),
+            "Latest has Time .* and VideoAnalysis has .*: leave the same columns",
+        ),
         ("1.9\n1.2\n0.9", "line 1: a table begins with headings: write 'time"),
         (
             "time,t\n0.9,0.72",
@@ -446,11 +468,34 @@ def test_an_echo_is_named_where_it_is(after, line, tmp_path):
         fit(path)
 
 
+@pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA])
+def test_an_archive_with_a_wrong_bit_is_read_or_refused_in_one_line(method, tmp_path):
+    """Passwords, compressions that are not known and damages gave tracebacks."""
+    path = tmp_path / "phyphox.zip"
+    with zipfile.ZipFile(path, "w", method) as archive:
+        archive.writestr("Data.csv", FILES["times"])
+    data = path.read_bytes()
+    said = set()
+    for i in range(32, 8 * len(data)):
+        flipped = bytearray(data)
+        flipped[i // 8] ^= 1 << i % 8
+        path.write_bytes(flipped)
+        try:
+            read(path)
+        except Refused as refused:
+            said.add(re.split("[:,]", str(refused).replace("Data.csv", ""))[1])
+    assert {" copy it again", " That compression method is not supported"} <= said
+    assert any("encrypted" in each for each in said)
+
+
 def test_what_is_no_text_is_refused(tmp_path):
     path = tmp_path / "lab.xlsx"
     for data, said in (
         (bytes(range(256)) * 20, "is no text: save it as csv"),
-        (b"PK\x03\x04 and more", "lab.xlsx is a spreadsheet: save its sheet as csv"),
+        (
+            b"PK\x03\x04 and more",
+            "lab.xlsx is a damaged archive: .*; of a spreadsheet save the sheet",
+        ),
     ):
         path.write_bytes(data)
         with pytest.raises(Refused, match=said):
@@ -530,7 +575,7 @@ def test_the_drag_is_said_only_where_it_matters():
         (FILES["two lines of heights"], "missing in line 3, which"),
         (
             FILES["picture, pixels"],
-            "no speed is known, and no drag .*: it needs positions in metres",
+            "by the times the ball falls from 1.48 m: if it does not, correct the times",
         ),
         ("t (s),y (cm)\n" + track(shown=lambda y: 1e4 * y), "gravity is 981 m/s² .* correct what"),
         (TWO, "lowest point of the ball"),
@@ -790,6 +835,23 @@ def test_rounded_positions_near_a_top_are_no_copies():
     assert not copies(t, y, 1.0).any()
     y[101::2] = y[100::2][: len(y[101::2])]
     assert copies(t, y, 1.0)[101::2].sum() > 100 and not copies(t, y, 1.0)[100::2].any()
+
+
+@pytest.mark.parametrize("shown", [1, 2, 3, 4])
+def test_copies_that_are_tracked_one_by_one_are_left_out(shown):
+    """A film of 60 Hz from a camera of 30 Hz had an interval six times as wide, without a word."""
+    pictures = np.arange(0, TIMES[-1] - 0.05, 1 / 30)
+    frames = np.repeat([position(t) for t in pictures], shown)
+    t = np.arange(len(frames)) / (30 * shown)
+    widths = []
+    for seed in range(7):
+        y = np.round(frames + 3e-3 * np.random.default_rng(seed).normal(size=len(t)), 4)
+        found, clean = (fit({"t (s)": t[::n], "y (m)": y[::n]}) for n in (1, shown))
+        assert any(COPIES in note for note in found.notes) == (shown > 1)
+        assert abs(found.restitution - 0.82) < np.ptp(found.interval)
+        widths.append((np.ptp(found.interval), np.ptp(clean.interval)))
+    copied, once = np.median(widths, axis=0)
+    assert copied < 2 * once
 
 
 def film(rate, noise, hidden=0.0):

@@ -53,6 +53,7 @@ _COMPUTED = {
     "flights": ("restitution",),
     "heights": ("restitution",),
 }
+_IGNORED = {"": "not known", "remark": "not read"}
 _READINGS = "height|rebound|bounce|drop|trial|speed|velocity|time"
 _ERRORS = "uncertainty|deviation|error|std|ratio|energy"
 _KEYS = ("mass", "diameter", "contact time", "resolution", "frame rate")
@@ -465,12 +466,13 @@ def _left_out(
     ]
 
 
-def _clock(columns: list[Column], gravity: Any, fall: Any) -> tuple[float, str, str]:
+def _clock(
+    columns: list[Column], gravity: Any, fall: Any, has_rate: bool
+) -> tuple[float, str, str]:
     """Return m per unit if times follow from the free fall, else 0; why no speed is known; a note.
 
     Gravity, in units of the positions per s², tells true times if the unit is one of lengths. For
-    pixels the frame rate of the camera does, if the times are frames; the longest fall in s tells
-    whether it is right.
+    pixels the times are taken as true; the longest fall in s tells whether they are.
     """
     unit = columns[1].unit
     metres = in_si("unit", f"1 {unit}", "m") if unit in ("", *units_of("m")) else math.nan
@@ -479,11 +481,16 @@ def _clock(columns: list[Column], gravity: Any, fall: Any) -> tuple[float, str, 
     is_stated = columns[0].name.lower() in NAMES["frame"].split(", ")
     if abs(slow - 1) < _SAME_CLOCK:
         return 0.0, "", ""
-    if not unit or math.isnan(metres):
-        drop = show(STANDARD_GRAVITY * fall**2 / 2, "m")
-        said = f"by the frame rate the ball falls from {drop}: if it does not, correct the rate"
-        missing = "it needs positions in metres, y (m), or frames below a line # frame rate: 240"
-        return 0.0, *(("", said) if is_stated else (missing, ""))
+    if unit == "px" or (not unit and has_rate):
+        drop = STANDARD_GRAVITY * fall**2 / 2
+        clock = "frame rate" if is_stated else "times"
+        said = f"by the {clock} the ball falls from {show(drop, 'm')}: "
+        # As of a height without a unit.
+        is_far = drop > 10
+        said += f"{'' if is_far else 'if it does not, '}correct the {clock}"
+        return 0.0, *((said, "") if is_far else ("", said))
+    if not unit:
+        return 0.0, "the positions need a unit: y (m), or y (px) next to true times", ""
     if slow < 1 or is_stated:
         return 0.0, f"{by}{is_stated * ' of the frame rate'}: correct what is wrong", ""
     return metres, "", f"{by}: times are {slow:.3g} times the true ones, which are used"
@@ -508,7 +515,9 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
         lowest = "".join(f"; line {line}: {said}" for line, said in list(reasons.items())[:1])
         raise Refused(f"{table.name}: no impact between two flights in the track{lowest}")
     before, _, gravity, *_ = np.transpose([impact_of(each) for each in tracks])
-    metres, no_speed, by_clock = _clock(columns, np.mean(gravity), np.max(before / gravity))
+    metres, no_speed, by_clock = _clock(
+        columns, np.mean(gravity), np.max(before / gravity), "frame rate" in table.head
+    )
     notes = [
         (by_clock, by_clock),
         (no_speed, f"no speed is known, and no drag of the air is removed: {no_speed}"),
@@ -546,7 +555,9 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
     kind, needed = next((each for each in layouts if roles >= set(each[1])), ("", ()))
     if not kind:
         there = ", ".join(
-            f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
+            f"{each.name!r} is {_IGNORED.get(each.role, each.role)}"
+            for each in table.columns
+            if each.name
         )
         film = (
             "frames are times with a line above the headings, # frame rate: 30; "
@@ -676,7 +687,7 @@ def read(
         texts = {cell for cell in each.cells if re.match(r"\D", cell)}
         if not each.role and np.isnan(each.numbers).all() and len(texts) > 1:
             raise Refused(
-                f"{table.name}: column {each.name!r} has {', '.join(sorted(texts))}: name it "
+                f"{table.name}: column {each.name!r} has {', '.join(sorted(texts)[:5])}: name it "
                 f"'ball' for one result each, or 'group' for one of all, {COLUMNS}"
             )
     balls = table.parts("ball")

@@ -99,8 +99,10 @@ TEXTS = ("ball", "recording", "group", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
 _KNOWN_UNITS = {*SPELLED, *itertools.chain(*map(units_of, ("s", "m", "m/s"))), "px", "%"}
 _CLOCKS = {"millis": "time (ms)", "micros": "time (µs)"}
-# Programs write the name of a series before a heading or behind it.
-_SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
+# Programs write the name of a series before a heading or behind it. The names of programs are those
+# of runs; other names may be those of balls.
+_SERIES = r"^[^:(\[]*[^\W\d_][^:(\[]*: ?(?=[^\W\d_])| run #\d+"
+_RUN = r"(?:latest|remote data|(?:data set|run|video ?analysis)?)[ #]*\d*"
 # The name of a ball may stand behind the unit.
 _OF_BALL = r"(.*\(\w+\)) *\(([^()]+)\)"
 # The monitor of a board writes its clock before each line.
@@ -142,6 +144,16 @@ _MOST_LINES = 40
 _OLD_SHEET = b"\xd0\xcf\x11\xe0"
 _ARCHIVE = b"PK\3\4"
 _OF_SHEETS = {"[Content_Types].xml", "mimetype"}
+# What a cell has that is no number, and what to do.
+_CAUSES = (
+    (r"\d+([-/.])\d+\1\d{2,4}\D.*:|\d{4}-\d|.*\d:\d", "write a date or a time of day in seconds"),
+    (
+        r"[-+−]?\d+([.,'’\s]\d+)+$",
+        "write thousands without a sign, and decimals with a point, 1234.5",
+    ),
+    (r"[-+−.\d]+\s*[^\W\d]", "a unit stands in the heading, as in {} ({})"),
+    ("", "correct it, or leave it empty"),
+)
 # What programs and people write for a missing number.
 _MISSING = ("", "-", "–", "—", "na", "n/a", "#n/a")
 
@@ -297,27 +309,39 @@ def _text_of(source: Any) -> tuple[str, str]:
 
 def _unpacked(name: str, data: bytes) -> bytes:
     """Return the only table of an archive; other data are returned as they are."""
-    is_archive = data.startswith(_ARCHIVE)
+    members: list[str] = []
+    tables: list[str] = []
     try:
-        archive = zipfile.ZipFile(io.BytesIO(data)) if is_archive else None
-    except zipfile.BadZipFile:
-        raise Refused(f"{name} is a spreadsheet: save its sheet as csv; or damaged") from None
-    members = archive.namelist() if archive else []
-    # Programs write folders about the device beside their table.
-    tables = [
-        each for each in members if re.fullmatch(r"[^/]+\.(csv|txt|tsv|dat|wav)", each.lower())
-    ]
+        if data.startswith(_ARCHIVE):
+            archive = zipfile.ZipFile(io.BytesIO(data))
+            members = archive.namelist()
+            # Programs write folders about the device beside their table.
+            tables = [
+                each
+                for each in members
+                if re.fullmatch(r"[^/]+\.(csv|txt|tsv|dat|wav)", each.lower())
+            ]
+            data = archive.read(tables[0]) if len(tables) == 1 else b""
+    except RuntimeError as reason:
+        # It is encrypted, or compressed in a way that zipfile does not know.
+        raise Refused(f"{name}: {reason}: unpack it, and give its table") from None
+    except Exception:
+        # Of one wrong bit zipfile raises any of seven exceptions.
+        raise Refused(
+            f"{name} is a damaged archive: copy it again, or unpack it, and give its table; of a "
+            "spreadsheet save the sheet as csv"
+        ) from None
     is_sheet = data.startswith(_OLD_SHEET) or _OF_SHEETS & {*members}
     refuse(
         [
             (is_sheet, f"{name} is a spreadsheet: save its sheet as csv"),
             (
-                archive and len(tables) != 1,
+                members and len(tables) != 1,
                 f"{name} has {', '.join((tables or members)[:5])}: unpack it, and give one table",
             ),
         ]
     )
-    return archive.read(tables[0]) if archive else data
+    return data
 
 
 def _heard(data: bytes) -> str:
@@ -537,7 +561,9 @@ def _below_each_other(
     # A column that one series has alone is not read.
     common = [each for each in plain if all(each in kind for kind in kinds.values())]
     alike = [each for each in dict.fromkeys(common) if each]
-    if not any(_heading(each)[2] not in ("", *TEXTS) for each in alike):
+    read, there = ({_heading(each)[2] for each in some} - {"", *TEXTS} for some in (alike, plain))
+    # Positions that only one series has are not left out.
+    if not read or (read == {"time"} and there != read):
         both = " and ".join(f"{each} has {', '.join(kind)}" for each, kind in kinds.items())
         raise Refused(f"{name}: {both}: leave the same columns of each, {COLUMNS}")
     numbers: list[int] = []
@@ -549,7 +575,8 @@ def _below_each_other(
         length = max(itertools.compress(itertools.count(1), is_there), default=0)
         numbers += lines[:length]
         stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
-    is_of_balls = any(re.fullmatch(_OF_BALL, each) for each in headings)
+    are_runs = all(re.fullmatch(_RUN, each, re.IGNORECASE) for each in series)
+    is_of_balls = not are_runs or any(re.fullmatch(_OF_BALL, each) for each in headings)
     return ["ball" if is_of_balls else "recording", *alike], numbers, stacked
 
 
@@ -587,8 +614,8 @@ def table_of(
         # Above its numbers the file has no names.
         rows = {0: [""] * len(rows[begin]), **rows}
     headings = _with_row_of_units(rows)
-    if named:
-        headings = _with_names(name, headings, named)
+    read = _read_columns(name, headings, named or {})
+    headings = [read.get(i, each) for i, each in enumerate(headings)]
     lines = list(rows)
     unknown = set(leave_out) - set(lines)
     refuse(
@@ -608,34 +635,39 @@ def table_of(
     padded = [[*row, *[""] * (len(headings) - len(row))][: len(headings)] for row in rows.values()]
     if not named:
         headings, lines, padded = _below_each_other(name, headings, lines, padded)
-    columns = []
-    for heading, *cells in zip(headings, *padded, strict=True):
+    columns: list[Column] = []
+    for heading, *written in zip(headings, *padded, strict=True):
         title, unit, role = _heading(heading)
+        if named and len(columns) not in read:
+            role = "remark"
+        cells = written
         if role and role not in TEXTS:
-            written = [_decimal(cell) for cell in cells]
-            cells, unit = _with_units_of_cells(written, unit, is_decimal_comma)
+            plain = [_decimal(cell) for cell in written]
+            cells, unit = _with_units_of_cells(plain, unit, is_decimal_comma)
         numbers = [_number(cell, is_decimal_comma) for cell in cells]
         if role and role not in TEXTS and None in numbers:
             i = numbers.index(None)
+            cause = next(said for form, said in _CAUSES if re.match(form, written[i]))
+            example = {"s": "s", "m/s": "m/s", "": "%"}.get(_UNITS.get(role, "m"), "cm")
             raise Refused(
-                f"{name}, line {lines[i]}: {cells[i]!r} below {title!r} is no number; a unit "
-                f"stands in the heading, as in {title} (cm)"
+                f"{name}, line {lines[i]}: {written[i]!r} below {title!r} is no number; "
+                + cause.format(title, example)
             )
         column = Column(title, unit, role, cells, np.array(numbers, float))
         # Trials by their numbers divide a table, where those of heights have a unit.
         is_number = title.lower() == "trial" and not unit and column.is_count
         columns.append(replace(column, role="recording") if is_number else column)
-    if _number(headings[0] or "no", is_decimal_comma) is not None:
+    if not named and _number(headings[0] or "no", is_decimal_comma) is not None:
         raise Refused(f"{name}, line {begin}: a table begins with headings: {HEADINGS}")
     columns = _with_units(columns)
     return Table(name, head, _with_times(head, columns), np.array(lines))
 
 
-def _with_names(name: str, headings: list[str], named: Mapping[str, str]) -> list[str]:
-    """Return the headings that are given for columns; those of other columns are remarks."""
+def _read_columns(name: str, headings: list[str], named: Mapping[str, str]) -> dict[int, str]:
+    """Return the headings that are given, by the places of their columns."""
     plain = [_heading(each)[0].lower() for each in headings]
     whole = [each.lower() for each in headings]
-    found = ["remark"] * len(headings)
+    found = {}
     for key, heading in named.items():
         names = whole if key.lower() in whole else plain
         is_there = key.lower() in names
@@ -663,10 +695,12 @@ def _decimal(cell: str) -> str:
     mixed = re.match(r"(\d+) (\d+)/([1-9]\d*)", plain)
     if mixed:
         plain = f"{int(mixed[1]) + int(mixed[2]) / int(mixed[3]):g}{plain[mixed.end() :]}"
-    feet = re.fullmatch(r"(\d+)\s*['’′]\s*(?:([\d.]+)\s*[\"”″]?)?", plain)
-    clock = re.fullmatch(r"(?:(\d+):)?(\d+):(\d\d(?:\.\d+)?)", plain)
+    feet = re.fullmatch(r"(\d+)\s*['’′]\s*(?:((?:\d|1[01])(?:\.\d+)?)\s*[\"”″]?)?", plain)
+    clock = re.fullmatch(r"(?:(\d+):)?(\d+):(\d\d(?:[.,]\d+)?)", plain)
     if clock:
-        return str(Decimal(clock[3]) + 60 * int(clock[2]) + 3600 * int(clock[1] or 0))
+        return str(
+            Decimal(clock[3].replace(",", ".")) + 60 * int(clock[2]) + 3600 * int(clock[1] or 0)
+        )
     return f"{12 * int(feet[1]) + float(feet[2] or 0):g} in" if feet else plain
 
 

@@ -77,20 +77,37 @@ def _noise(t: Array, y: Array) -> float:
     return float(np.median(_third_differences(t, y))) / _MEDIAN if len(t) > 3 else math.inf
 
 
+def _repeats(t: Array, y: Array) -> NDArray[np.bool_]:
+    """Return which positions are the one before within errors, between moves in one direction.
+
+    From up to four frames of one picture a tracker reads positions that differ by its errors. The
+    velocity among them is less than a third of those before and after.
+    """
+    is_repeat = np.diff(y, prepend=math.nan) == 0
+    for count in range(1, min(4, len(y) - 2)):
+        moves, steps = (np.diff(sliding_window_view(each, count + 3), axis=1) for each in (y, t))
+        before, after = moves[:, 0] / steps[:, 0], moves[:, -1] / steps[:, -1]
+        within = np.max(np.abs(np.cumsum(moves[:, 1:-1], axis=1) / steps[:, 1:-1]), axis=1)
+        is_among = np.minimum(np.abs(before), np.abs(after)) > 3 * within
+        begins = np.flatnonzero(is_among & (before * after > 0)) + 2
+        is_repeat[begins[:, None] + np.arange(count)] = True
+    return is_repeat
+
+
 def copies(t: Array, y: Array, digit: float) -> NDArray[np.bool_]:
     """Return which positions repeat the one before, while the ball moves on in one direction.
 
     Rounded positions repeat near a top, where the ball moves by one digit. Around a copy it moves
     by three digits or more. Errors let positions repeat by chance, so that a film has copies only
-    if the ball moves by much more than the errors around one of them.
+    if the ball moves by 15 errors around one of them: then a third of the move is 4.5 errors of it.
     """
-    begins = np.flatnonzero(np.diff(y, prepend=math.nan) != 0)
+    begins = np.flatnonzero(~_repeats(t, y))
     moves = np.diff(y[begins])
     ways = np.zeros(len(begins))
     ways[1:-1] = np.minimum(*np.abs([moves[:-1], moves[1:]])) * (moves[:-1] * moves[1:] > 0)
     around = np.repeat(ways, np.diff([*begins, len(y)]))
     around[begins] = 0
-    has_copies = around.max(initial=0) > 10 * _noise(t[begins], y[begins])
+    has_copies = around.max(initial=0) > 15 * _noise(t[begins], y[begins])
     return has_copies & (around > 2.5 * digit)
 
 

@@ -49,6 +49,8 @@ SPELLED = {
     "sec": "s",
     "milliseconds": "ms",
     "grams": "g",
+    "pixel": "px",
+    "pixels": "px",
 }
 """Units in words."""
 _UNITS = {

@@ -213,7 +213,7 @@ def test_the_threshold_of_matter_is_in_the_answer(typed):
     assert "threshold of 1.18 m/s, 2 pixels in 1/60 s, Resolver._restingThresh" in out
     assert "a metre of 102 pixels" in out and "flights are damped" not in out
     out = typed(f"{said} --gravity 0 pixels=200")[1]
-    assert "r = 0.972 (0.954 to 1.000)" in out and "a metre of 200 pixels" in out
+    assert "r = 0.972 (0.954 to 1.000)" in out and "200 pixels in a metre" in out
     out = typed(f"{said} --gravity 0 Matter.Resolver._restingThresh=0.5")[1]
     assert "threshold of" not in out and "to 1.000)" in out
 
@@ -222,7 +222,7 @@ def test_the_threshold_of_matter_is_in_the_answer(typed):
 def test_names_that_an_answer_prints_can_be_typed(name):
     """ "Physics.bounceThreshold=1.1" was refused, beside a list in which it was."""
     engine = BY_NUMBER[name]
-    for each in {*engine.lines, engine.set_by} - {"", "step"}:
+    for each in {*engine.lines, engine.set_by} - {"", "step", "gravity"}:
         is_number = engine.names[as_compared(each)] == "number"
         given = {each: 0.25} | ({} if is_number else {"restitution": 0.25})
         assert diagnose(Bounce(**BALL), name, given, "1/240").parameters[engine.parameter] == 0.25
@@ -255,6 +255,44 @@ def test_two_bodies_are_combined_as_the_engine_does():
     assert dart.numbers["number"] == 0.4
     # With 0 on the ground no number of the ball is enough.
     assert "(of both bodies)" in str(found)
+
+
+def test_one_body_has_a_negative_number_where_the_engine_takes_one():
+    """Jolt 5 bounces with the other number, and Godot's absorbent material subtracts its own."""
+    alone = diagnose(Bounce(**BALL), "jolt", {"restitution": 0.8}, "1/60")
+    beside = diagnose(Bounce(**BALL), "jolt", {"restitution": 0.8}, "1/60", other={"restitution": -1})
+    assert beside.outcome == alone.outcome
+    added = {"bounce": 0.8}, "1/60"
+    absorbed = diagnose(Bounce(**BALL), "godot-jolt", *added, other={"bounce": -0.3})
+    assert absorbed.numbers["number"] == pytest.approx(0.5)
+    nothing = diagnose(Bounce(**BALL), "godot-jolt", *added, other={"bounce": -0.9})
+    assert nothing.outcome.restitution.high == 0 and "has -0.9, and" in nothing.warnings[0]
+    for name, typed, other in (
+        ("jolt", -0.5, None),
+        ("jolt", -0.5, -0.2),
+        ("rapier", 0.8, -0.2),
+        ("physx", -0.2, None),
+    ):
+        with pytest.raises(Refused, match="needs a positive one of the other|is not between 0 and"):
+            beside = None if other is None else {"restitution": other}
+            diagnose(Bounce(**BALL), name, {"restitution": typed}, "1/60", other=beside)
+
+
+def test_a_design_for_matter_has_the_pixels_of_a_metre(typed):
+    """Pasted into matter-js 0.20.0 it had 0.794 to 0.815."""
+    bounce = Bounce(restitution=0.8, drop_height=2, radius=0.4)
+    found = design(bounce, "matter-js", "1/60", pixels=50)
+    given = {**found.parameters, "pixels": 50}
+    assert diagnose(bounce, "matter-js", given, "1/60").outcome == found.outcome
+    r = found.outcome.restitution
+    assert (r.low, r.high) == pytest.approx((0.778, 0.819), abs=2e-3)
+    # 50 pixels have 9.80665 m/s²: in 1/ms² and pixels.
+    assert "engine.gravity.scale = 0.000490332;" in found.snippet
+    assert "gravity" not in design(bounce, "matter-js", "1/60").snippet
+    said = "design --engine {} --restitution 0.8 --drop-height 2m --radius 0.4m --pixels 50"
+    assert found.snippet in typed(said.format("matter-js"))[1]
+    for name in ("rapier", "mujoco", "generic"):
+        assert "is of matter-js" in typed(said.format(name))[2]
 
 
 def test_a_ground_of_0_multiplies_everything_away():
@@ -463,6 +501,8 @@ def test_other_names_are_known(typed_name, name):
         ("ammo.js", "is Bullet: take pybullet with linearDamping=0"),
         ("PlayCanvas", "has Bullet: take pybullet with linearDamping=0"),
         ("Babylon.js", "take cannon-es"),
+        ("A-Frame", "take cannon-es"),
+        ("aframe-physics-system", "take cannon-es"),
         ("dyn4j", "dyn4j was not run"),
         ("ReactPhysics3D", "ReactPhysics3D was not run"),
         ("siconos", "siconos was not run"),

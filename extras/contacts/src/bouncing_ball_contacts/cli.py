@@ -119,15 +119,21 @@ def _status(found: Answer) -> int:
         click.Option(["--friction"], help="Coefficient of friction."),
         _ENGINE,
         _STEP,
+        click.Option(["--pixels"], help="In a metre, of matter-js; its gravity sets them if not."),
         _EXPLAIN,
         _JSON,
     ],
 )
 def design_command(
-    engine: str, time_step: str | None, explain: bool, as_json: bool, **bounce: Any
+    engine: str,
+    time_step: str | None,
+    pixels: str | None,
+    explain: bool,
+    as_json: bool,
+    **bounce: Any,
 ) -> int:
     """Write the contact of an engine, or its restitution number, for the bounce that you want."""
-    found = design(Bounce(**bounce), engine, time_step)
+    found = design(Bounce(**bounce), engine, time_step, pixels=pixels)
     _print(found, as_json, explain)
     return _status(found)
 

@@ -202,9 +202,9 @@ class ByNumber:
         See :func:`ran_in`.
     rule : callable
         Steps of a ball, see :mod:`.step_rules`.
-    parameter, pair, default
-        Name of the number, how the engine combines the numbers of two bodies, and the number of a
-        body for which none is set.
+    parameter, pair, default, lowest
+        Name of the number, how the engine combines the numbers of two bodies, the number of a body
+        for which none is set, and the smallest number that one of two bodies may have.
     threshold : float
         Speed in m/s below which an impact has no restitution; with ``is_of_rebound`` the speed of
         the rebound counts.
@@ -213,8 +213,8 @@ class ByNumber:
     has_defaults : bool
         Whether the threshold has a default. A contact of ODE is a struct of C, which has none.
     lines : mapping
-        Lines to paste, by the names of the number, the threshold, the settings, and "step" in s. A
-        threshold without a line is a constant.
+        Lines to paste, by the names of the number, the threshold, the settings, and "step" in s,
+        and with pixels "gravity" in pixels/ms². A threshold without a line is a constant.
     settings : mapping
         Other parameters that change r, with their defaults.
     designed : tuple of mappings
@@ -259,6 +259,7 @@ class ByNumber:
     parameter: str = "restitution"
     pair: Rule = MEAN
     default: float = 0.0
+    lowest: float = 0.0
     threshold: float = 0.0
     is_of_rebound: bool = False
     set_by: str = ""

@@ -26,7 +26,7 @@ def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
     known = rows | NAMES
     plain = re.sub(r"[\W_]", "", str(name).lower())
     # A version at the end, and words such as "engine", belong to no name.
-    bare = re.sub(r"(physics|engine|js)*(v?\d+d?)?$", "", plain)
+    bare = re.sub(r"(physics|engine|system|js)*(v?\d+d?)?$", "", plain)
     key = next((each for each in (plain, bare) if each in known), "")
     found = known.get(key, "")
     near = difflib.get_close_matches(plain, known, 1, 0.85)
@@ -41,7 +41,13 @@ def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
     return ENGINES.get(row.springs if row else found), row
 
 
-def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity = None) -> Answer:
+def design(
+    bounce: Bounce,
+    engine: str | Engine = "generic",
+    time_step: Quantity = None,
+    *,
+    pixels: Quantity = None,
+) -> Answer:
     """Return what to write into an engine for a bounce, and what it does there.
 
     Parameters
@@ -53,6 +59,8 @@ def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity
         restitution that no number gives, as 0.
     time_step : Quantity, optional
         Time step of the engine. By default the longest step that the contact allows.
+    pixels : Quantity, optional
+        Pixels in a metre, of an engine whose lengths are pixels. By default its gravity sets them.
 
     Returns
     -------
@@ -74,13 +82,13 @@ def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity
             "the restitution is missing: --restitution 0.8 or restitution=0.8; 'bounce fit' "
             "measures it"
         )
-    if isinstance(engine, Engine):
-        return design_spring(bounce, engine, time_step)
-    springs, number = rows_of(engine)
+    springs, number = (engine, None) if isinstance(engine, Engine) else rows_of(engine)
+    if pixels is not None and not (number and number.pixels):
+        raise Refused("--pixels is of matter-js, whose lengths are pixels: here they are metres")
     is_spring = bounce.gives_contact or bounce.restitution == 0
     if number is None or (springs is not None and is_spring):
         return design_spring(bounce, springs or ENGINES["generic"], time_step)
-    found = design_number(bounce, number, time_step)
+    found = design_number(bounce, number, time_step, pixels)
     if found.snippet or found.also or springs is None or bounce.mass is None:
         return found
     return design_spring(bounce, springs, time_step)

@@ -26,6 +26,7 @@ from bouncing_ball_contacts.engines import (
     MODES,
     OF_PAIR,
     PAIR,
+    PIXELS,
     ByNumber,
     Rule,
     as_compared,
@@ -196,6 +197,9 @@ def _snippet(case: "Case", number: float) -> str:
     changed = {name: value for name, value in case.settings.items() if value != own.settings[name]}
     if case.threshold != row.threshold or not row.has_defaults:
         changed[row.set_by] = float(f"{case.threshold / row.unit:.2g}")
+    gravity = case.bounce.gravity * row.pixels
+    if row.pixels and not math.isclose(gravity, PIXELS):
+        changed["gravity"] = float(f"{gravity / 1e6:.6g}")
     rate = 1 / case.step
     values = {row.parameter: float(f"{number:.4g}"), **changed, "step": float(f"{case.step:.6g}")}
     # In the order of the lines.
@@ -225,6 +229,11 @@ class Case(NamedTuple):
     threshold: float
     settings: Mapping[str, float]
     other: float | None = None
+
+    @property
+    def is_own_scale(self) -> bool:
+        """Whether the gravity of the engine sets how many pixels a metre has."""
+        return self.engine.pixels == BY_NUMBER[self.engine.name].scaled(self.bounce.gravity).pixels
 
     @property
     def speed(self) -> float:
@@ -399,7 +408,8 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
             (row.ignored_by, f"{row.ignored_by} ignores this number"),
             (
                 number == 0 < written,
-                f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}",
+                f"nothing bounces: the other body has {case.other or 0:g}, and the numbers are "
+                f"{row.pair.text}",
             ),
             (
                 number > 0 and is_slow and r.high < 0.1,
@@ -441,10 +451,9 @@ def _by_assumptions(case: Case, written: float, r: Range) -> Iterator[str]:
     smaller = replace(bounce, radius=bounce.size / 5)
     light = replace(bounce, mass=0.05, radius=bounce.size)
     fewer = replace(row.scaled(bounce.gravity, row.pixels / 6), pair=row.pair)
-    is_own_scale = row.pixels == BY_NUMBER[row.name].scaled(bounce.gravity).pixels
     others = [
         (
-            row.pixels and is_own_scale,
+            row.pixels and case.is_own_scale,
             f"{row.pixels:.3g} pixels per metre; with {fewer.pixels:.3g}",
             case._replace(engine=fewer, threshold=6 * case.threshold),
         ),
@@ -471,9 +480,10 @@ def _remarks(case: Case, written: float, r: Range) -> list[str]:
     bounce = case.bounce
     damping = case.settings.get(row.damped_by, 0.0)
     given = [f"{name} {value}" for name, value in bounce.given.items()]
-    pixels = f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)"
+    pixels = f"a metre of {row.pixels:.3g} pixels (--pixels, or pixels=… in a diagnosis)"
+    given += holding([(not case.is_own_scale, f"{row.pixels:g} pixels in a metre")])
     weighs = row.depends_on_mass and bounce.mass is None
-    others = [(weighs, "a mass of 1 kg (--mass)"), (row.pixels, pixels)]
+    others = [(weighs, "a mass of 1 kg (--mass)"), (row.pixels and case.is_own_scale, pixels)]
     assumed = bounce.assumed + holding(others)
     defaults = {
         name: value
@@ -547,7 +557,9 @@ def _refuse_ignored(bounce: Bounce, engine: ByNumber, is_other: bool = False) ->
     )
 
 
-def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answer:
+def design_number(
+    bounce: Bounce, engine: ByNumber, time_step: Quantity, pixels: Quantity = None
+) -> Answer:
     """Return the restitution number with which a ball bounces as wanted, for both bodies alike.
 
     Raises
@@ -556,7 +568,8 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
         If the step is missing, or no number bounces.
     """
     _refuse_ignored(bounce, engine)
-    engine = engine.scaled(bounce.gravity)
+    scale = None if pixels is None else positive("pixels", pixels, "")
+    engine = engine.scaled(bounce.gravity, scale)
     is_free = time_step is None and not engine.own_step and bool(engine.springs)
     if is_free:
         # The body moves by less than it may sink, and gravity adds less than the tolerance.
@@ -666,6 +679,11 @@ def diagnose_number(
         other=None if other is None else differs.get("number", engine.default),
     )
     number = given.get("number", engine.default)
+    if case.number(number) < 0:
+        raise Refused(
+            f"{engine.name}: a negative {engine.parameter} needs a positive one of the other body "
+            f"(--other): {engine.pair.text}"
+        )
     found = case.tried(number).answer()
     causes = tuple(_causes(case, number, found.outcome.restitution.mean))
     # Nothing is to be pasted of what is given.
@@ -702,7 +720,6 @@ def _step(time_step: Quantity, engine: ByNumber) -> float:
 
 
 _READ: Mapping[str, Callable[[str, Any], Any]] = {
-    "number": lambda name, value: within(name, value, 0, 1),
     "threshold": lambda name, value: within(name, in_si(name, value, "m/s"), 0, math.inf),
     "pixels": lambda name, value: positive(name, value, ""),
     "combine": lambda name, value: MODES[one_of(name, value, MODES)],
@@ -744,8 +761,9 @@ def _given(engine: ByNumber, typed: Mapping[str, Any], is_other: bool = False) -
             if as_compared(name) not in known
         ],
     )
+    read = {"number": lambda name, value: within(name, value, engine.lowest, 1), **_READ}
     return {
-        what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(
+        what: read.get(what, lambda name, value: within(name, value, 0, math.inf))(
             engine.parameter if what == "number" else what, value
         )
         for what, value in found.items()

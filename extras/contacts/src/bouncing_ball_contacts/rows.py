@@ -650,6 +650,7 @@ _JOLT = ByNumber(
     ran="Jolt 5 (jolt-physics 1.1.0 for JavaScript)",
     parameter="mRestitution",
     pair=LARGER,
+    lowest=-1.0,
     threshold=1.0,
     set_by="PhysicsSettings::mMinVelocityForRestitution",
     lines={
@@ -760,7 +761,12 @@ BY_NUMBER = {
             name="godot-jolt",
             own_step=1 / 60,
             parameter="bounce",
-            pair=Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2),
+            # A material that is absorbent has a negative number.
+            pair=Rule(
+                "added, and kept from 0 to 1",
+                lambda a, b: min(max(a + b, 0.0), 1.0),
+                lambda x: x / 2,
+            ),
             set_by=_GODOT,
             lines={
                 "bounce": "physics_material.bounce = {value}  # of {bodies}",
@@ -913,6 +919,7 @@ BY_NUMBER = {
                 "{{restitution: {value}}});  // of {bodies}",
                 "Resolver._restingThresh": "Matter.Resolver._restingThresh = {value};",
                 "frictionAir": "body.frictionAir = {value};",
+                "gravity": "engine.gravity.scale = {value};",
                 "step": "Matter.Engine.update(engine, 1000 / {rate});",
             },
             pixels=PIXELS / STANDARD_GRAVITY,
@@ -1104,6 +1111,7 @@ NAMES = {
     "pymunk": "chipmunk",
     "xpbd": "newton-xpbd",
     "adams": "",
+    "aframe": "has several engines: take cannon-es for its Cannon",
     "avian": "",
     "bepu": "",
     "bevy": "has several engines: take rapier for bevy_rapier",

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from bouncing_ball_contacts.intervals import curves_of, errors_shown, estimate, impacts_of
-from bouncing_ball_contacts.recordings import Recording, rounding_of
+from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
 
 
@@ -109,6 +109,21 @@ def films(rng, r, heights, impacts, error, scatter, shared):
             v = up
     groups = np.repeat(np.arange(len(heights)), impacts)
     return Recording("films", "track", tuple(tracks), groups=groups)
+
+
+def film(rng, r, height, impacts, error, scatter):
+    """One film of a fall with 60 frames a second, as it is tracked and read."""
+    up = math.sqrt(2 * G * height)
+    begins, ups = [-2 * up / G], [up]
+    for _ in range(impacts):
+        begins.append(begins[-1] + 2 * ups[-1] / G)
+        ups.append(ups[-1] * float(np.squeeze(r(ups[-1]))) * math.exp(scatter * rng.normal()))
+    t = np.arange(-up / G + rng.uniform(0, 1 / 60), begins[-1] + 1.9 * ups[-1] / G, 1 / 60)
+    flight = np.searchsorted(begins, t, side="right") - 1
+    since = t - np.array(begins)[flight]
+    y = np.array(ups)[flight] * since - G / 2 * since**2
+    (found,) = read({"t (s)": t, "y (m)": y + error * rng.normal(size=len(t))}).values()
+    return found
 
 
 def coefficients(rng, r, v, error, scatter, stated, shared=0.0):
@@ -648,6 +663,17 @@ KINDS = [
         "9 drops from 9 heights read to 1 mm, scatter 0.005",
         soft(0.8),
         partial(drops, heights=np.geomspace(0.35, 1.4, 9), each=1, error=1e-3, scatter=0.005),
+    ),
+    # The commonest film.
+    (
+        "1 film of 5 impacts, positions to 2 mm",
+        flat(0.8),
+        partial(film, height=1.2, impacts=5, error=2e-3, scatter=0),
+    ),
+    (
+        "1 film of 5 impacts, positions to 2 mm, scatter 0.01",
+        soft(0.8),
+        partial(film, height=1.2, impacts=5, error=2e-3, scatter=0.01),
     ),
 ]
 

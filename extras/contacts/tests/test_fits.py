@@ -134,7 +134,7 @@ def test_one_impact_has_no_interval_of_its_own():
 
 
 # A third of the kinds, and of those with rounded times and with drops one.
-FITTED = [coverage.KINDS[i] for i in (0, 3, 6, 12, 15, 18, 21, 24, 27, 32, 36, 42, 67, 76, 77)]
+FITTED = [coverage.KINDS[i] for i in (0, 3, 6, 12, 15, 18, 21, 24, 27, 32, 36, 42, 67, 76, 77, 82)]
 
 
 @pytest.mark.parametrize("kind", FITTED, ids=lambda kind: kind[0])

@@ -260,7 +260,9 @@ def test_two_bodies_are_combined_as_the_engine_does():
 def test_one_body_has_a_negative_number_where_the_engine_takes_one():
     """Jolt 5 bounces with the other number, and Godot's absorbent material subtracts its own."""
     alone = diagnose(Bounce(**BALL), "jolt", {"restitution": 0.8}, "1/60")
-    beside = diagnose(Bounce(**BALL), "jolt", {"restitution": 0.8}, "1/60", other={"restitution": -1})
+    beside = diagnose(
+        Bounce(**BALL), "jolt", {"restitution": 0.8}, "1/60", other={"restitution": -1}
+    )
     assert beside.outcome == alone.outcome
     added = {"bounce": 0.8}, "1/60"
     absorbed = diagnose(Bounce(**BALL), "godot-jolt", *added, other={"bounce": -0.3})

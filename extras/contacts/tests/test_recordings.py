@@ -231,6 +231,8 @@ def test_columns_are_named_where_no_synonym_is_known(tmp_path, typed):
         fit(path, columns={"2": "Ort"})
     with pytest.raises(Refused, match="'Zeit' is not read, 'y' is position, 'Tempo' is not"):
         fit(path, columns={"2": "y (m)"})
+    with pytest.raises(Refused, match="are those of samples .Ort, Tempo."):
+        fit(path, columns={"1": "t (s)"})
     path.write_text(numbers)
     assert fit(path, columns={"1": "t (s)", "2": "y (m)"}).result.endswith(said)
 
@@ -613,6 +615,15 @@ def test_a_column_group_pools_balls_whose_impacts_share_an_error(columns):
     found = fit(columns | {"group": ["a", "", "b", "b", "c", "c"]})
     assert sorted(set(found.impacts.groups)) == ["a", "b", "c"]
     assert "3 groups deviate" in str(found) or len(found.impacts.speed) == 3
+
+
+@pytest.mark.parametrize(("drop", "r"), [(1.0, "0.825"), (1.04, "0.809")])
+def test_heights_of_the_top_of_a_ball_have_the_r_of_the_page(drop, r):
+    """Both heights of the top were said to have 0.825."""
+    found = fit({"drop (m)": [drop], "rebound (m)": [0.8**2 + 0.04]})
+    assert f"{found.restitution:.3f}" == r
+    page = Path(__file__).parents[1] / "docs" / "files.md"
+    assert r in page.read_text("utf-8")
 
 
 def test_a_line_without_r_has_no_error_either():

@@ -193,7 +193,8 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines, another: str) 
     half = len(flights) // 2
     # Flights get shorter, even if r is 0.997.
     if half >= 10 and flights[half:].mean() > 0.97 * flights[:half].mean():
-        others = [each.name for each in table.columns if each.role not in ("time", *TEXTS)]
+        of_series = {"time", *TEXTS} - {"remark"}
+        others = [each.name for each in table.columns if each.role not in of_series]
         raise Refused(
             f"{table.name}: evenly spaced times are those of samples ({', '.join(others)}): "
             "positions, y (m), are read, and sounds as WAV, but neither accelerations nor forces; "

@@ -1147,6 +1147,7 @@ NAMES = {
     "playcanvas": "has Bullet: take pybullet with linearDamping=0",
     "physx3": "",
     "reactphysics3d": "",
+    "reactthreecannon": "has cannon-es: take cannon-es",
     "reactthreerapier": "has Rapier: take rapier",
     "rigidipc": "",
     "sapien": "has PhysX with the solver TGS, for which there is no row",

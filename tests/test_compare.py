@@ -11,6 +11,7 @@ import sys
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from io import BytesIO
 from itertools import chain, product
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,6 +21,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
+from PIL import Image, ImageColor
 from tests.checkout import ROOT
 from tests.jobs import Named
 
@@ -69,9 +71,16 @@ def make(name, data, folder, form="{:.3g}"):
     save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "a salt")
 
 
+def png(values):
+    """A picture of these grey levels."""
+    with BytesIO() as file:
+        Image.fromarray(np.array(values, np.uint8)).save(file, "PNG")
+        return file.getvalue()
+
+
 def side_by_side(name, several):
-    """Pictures as bytes: the heights of all datasets."""
-    return [f"{name} {each.max_height.values}".encode() for each in several]
+    """Pictures that are as dark as the heights of all datasets are large."""
+    return [png([255 - 100 * each.max_height.values]) for each in several]
 
 
 def project_in(top):
@@ -225,7 +234,7 @@ def test_a_page_that_the_reference_does_not_have_is_as_its_record_says(project):
     with pytest.raises(ValueError, match="edited by hand"):
         accept(project)
     page.unlink()
-    assert lines(project) == ["index: missing: index.html in the results"]
+    assert lines(project) == ["missing in the results: index.html"]
     assert report(project).status == 1
     # A figure was asked for.
     assert lines(project, names=["fig14"]) == []
@@ -337,7 +346,7 @@ def test_a_description_names_the_file_of_descriptions(project, monkeypatch):
 @pytest.mark.parametrize(
     "change, line",
     [
-        (lambda data: data.isel(frequency_ratio=[0]), "frequency_ratio.sizes {"),
+        (lambda data: data.isel(frequency_ratio=[0]), "frequency_ratio 2 is missing"),
         (lambda data: data.rename(max_height="phase"), "max_height is missing"),
         (lambda data: data.astype("float32"), "max_height.type float64 → float32"),
         (lambda data: data.assign(max_height=data.max_height * np.inf), "max_height 1 → inf"),
@@ -347,7 +356,7 @@ def test_variables_shapes_types_and_infinities_differ(project, change, line):
     path = project.top / "results/figures/fig14.nc"
     data = datasets.read(path)
     change(data).to_netcdf(path)
-    assert any(line in each for each in lines(project))
+    assert any(line in " ".join(each.split()) for each in lines(project))
 
 
 def test_titles_and_captions_are_parameters(project):
@@ -440,6 +449,8 @@ def test_the_page_shows_both_pictures(project, capsys, drawn):
     pictures = [path.with_suffix(".png").read_bytes() for path in sides]
     if drawn:
         pictures = side_by_side("fig14", [datasets.read(path) for path in sides])
+        (both,) = compare.over_each_other(pictures)
+        pictures.insert(0, both)
     else:
         project = replace(project, side_by_side=None)
     job = SimpleNamespace(
@@ -448,12 +459,12 @@ def test_the_page_shows_both_pictures(project, capsys, drawn):
     assert compare.report_of_run(project, results, job) == 1
     page = results / "diff/index.html"
     text = page.read_text("utf-8")
-    assert "max_height 2 → 2.5" in text
+    assert "max_height<" in text and "<td>2 → 2.5</td><td>frequency_ratio = 2</td>" in text
     # The way back.
     target = text.partition('href="')[2].partition('"')[0]
     assert (page.parent / target).resolve() == results / "index.html"
     shown = [text.index(base64.b64encode(picture).decode()) for picture in pictures]
-    assert shown == sorted(shown)
+    assert shown == sorted(shown) and text.count("data:image/png") == len(pictures) + (not drawn)
     printed = capsys.readouterr().err
     assert (results / "diff/report.txt").read_text("utf-8") == printed
     assert printed.splitlines()[-2:] == ["Differences in fig14.", str(page)]
@@ -494,7 +505,48 @@ def test_a_new_label_is_named_and_the_values_of_the_others_are_compared():
         for names, values in ((["high"], [1.0]), (["high", "low"], [2.0, 3.0]))
     )
     expected = ["claim low is new", "height 1 → 2 at claim = high (tolerance 1e-09)"]
-    assert compare.differences("claims.nc", old, new) == expected
+    assert [*map(str, compare.differences("claims.nc", old, new))] == expected
+
+
+def test_a_table_has_a_row_for_each_variable_and_the_rest_is_named():
+    """Of a variable that is undefined in one run, the largest change of its numbers is told."""
+    about = {"tolerance": 1e-9, "floor": 1e-3, "long_name": "a height"}
+    numbers = [[1.0, 2.0, np.nan, 4.0], [1.0, 2.5, 3.0, 4.1]]
+    old, new = (
+        xr.Dataset({f"h{n:02}": ("x", values, about) for n in range(12)}, {"x": [1, 2, 4, 8]})
+        for values in numbers
+    )
+    found = compare.Finding("differs", compare.differences("a.nc", old, new))
+    first, *rows = found.lines("a")
+    assert first == "a: 12 differences"
+    assert rows[:-1] == [f"  h{n:02}  3 of 4  2 → 2.5 at x = 2" for n in range(10)]
+    assert rows[-1] == "  and h10, h11"
+
+
+def test_the_largest_change_of_whole_numbers_and_undefined_ones():
+    old, new = (xr.Dataset({"k": ("x", values)}) for values in ([1, 2, 3], [2, 9, 3]))
+    assert [*map(str, compare.differences("a.nc", old, new))] == [
+        "k 2 → 9 at x = 1, and 1 more of 3 values"
+    ]
+    about = {"tolerance": 1e-9, "floor": 1e-3}
+    old, new = (xr.Dataset({"k": ("x", [1.0, x], about)}) for x in (np.nan, 2.0))
+    assert [*map(str, compare.differences("a.nc", old, new))] == [
+        "k nan → 2 at x = 1 (tolerance 1e-09)"
+    ]
+
+
+def test_two_pictures_over_each_other_show_what_only_one_draws():
+    """White paper, what both draw, and what is fainter, missing or of another colour in one."""
+    both = compare.over_each_other([png([[255, 0, 0, 255, 0]]), png([[255, 0, 255, 0, 3]])])
+    paper, grey, *only, faint = np.asarray(Image.open(BytesIO(*both)))[0].tolist()
+    assert (paper, len({*grey})) == ([255] * 3, 1)
+    assert only == [[*ImageColor.getrgb(colour)] for colour in compare.ONLY]
+    assert faint != grey
+    red, blue = (png([[[255 * (n == k) for n in range(3)]]]) for k in (0, 2))
+    (mixed,) = compare.over_each_other([red, blue])
+    assert len({*Image.open(BytesIO(mixed)).getpixel((0, 0))}) > 1
+    for others in ([red], [red, png([[0, 0]])], [red, b""]):
+        assert compare.over_each_other(others) == []
 
 
 def test_of_several_workflows_in_a_zip_each_takes_its_own_results(project, tmp_path):
@@ -542,13 +594,48 @@ def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind)
         str(page),
     ]
     text = page.read_text("utf-8")
-    assert "changed parameter: n 1 → 2" in text and text.count("data:image/png") == 2
+    assert "changed parameter: n 1 → 2" in text and text.count("data:image/png") == 3
     # One run elsewhere has parameters of its own, and must be what today's code makes.
     if kind == "folder":
         for file in FILES:
             (project.top / file).write_text(f"{json.dumps(CONFIG)}\n", "utf-8")
         assert compare.main(project, [str(other)]) == 1
         assert f"fig14: {HIGHER}; changed parameter: n 1 → 2" in capsys.readouterr().out
+
+
+def test_names_select_what_is_compared_and_what_a_run_lacks_is_one_line(project, tmp_path, capsys):
+    one, other = map(str, two_runs(project, tmp_path))
+    for path in Path(other).glob("figures/*"):
+        if path.suffix != ".nc":
+            path.unlink()
+    shutil.rmtree(Path(other) / "diff", ignore_errors=True)
+    (Path(other) / "paper.md").unlink()
+    fig14 = f"fig14: {HIGHER}; changed parameter: n 1 → 2"
+    lacks = f"missing in {other}: "
+    differ = "Differences in fig14."
+
+    def told(*arguments):
+        status = compare.main(project, [*arguments])
+        return status, capsys.readouterr().out.splitlines()[:-1]
+
+    status, printed = told(one, other)
+    assert (status, printed[:2]) == (1, [fig14, f"{lacks}5 files of fig01, fig14, paper"])
+    assert printed[-1] == f"{differ} 5 files are missing."
+    pictures = "figures/fig14.png, figures/fig14.svg"
+    assert told(one, other, "fig14") == (
+        1,
+        [fig14, f"{lacks}{pictures}", f"{differ} 2 files are missing."],
+    )
+    assert told(one, other, "claims") == (0, ["All 1 files agree with " + one + "."])
+    assert told(one, other, "paper") == (1, [f"{lacks}paper.md", "1 file is missing."])
+    # One run, with names, is compared with the reference.
+    assert told(str(project.top), "claims")[0] == 0
+    for names in ([one, other, "fig99"], [one, "fig99"]):
+        with pytest.raises(SystemExit) as ended:
+            told(*names)
+        assert (
+            ended.value.code == 2 and "fig99: neither a run nor a name" in capsys.readouterr().err
+        )
 
 
 @pytest.mark.parametrize("left", ["[]", "null", '{"made": null}', "[" * 100_000, "<<<<<<< HEAD"])
@@ -614,7 +701,9 @@ def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
         accept(project, made)
     for path in left:
         path.unlink()
-    assert "fig01: missing: figures/fig01.png in the results" in lines(project, made=made)
+    assert lines(project, made=made)[-1] == (
+        "missing in the results: figures/fig01.png, figures/fig01.svg"
+    )
     git(project.top, "rm", "-q", "--cached", "figures/fig01.svg")
     assert accept(project, made) == ["figures/fig01.png"]
     assert [path.name for path in project.top.glob("figures/fig01.*")] == ["fig01.svg"]
@@ -946,7 +1035,10 @@ def wanted(old, new, stale, contents, is_data, with_reference):
     sides = {old, new}
     if sides & {"damaged", "unnamed"} or sides == {"missing"}:
         return "not comparable"
-    if "missing" in sides or (stale and with_reference):
+    stale = stale and with_reference
+    if "missing" in sides:
+        return "differs" if "edited" in sides or (stale and new != "missing") else "missing"
+    if stale:
         return "differs"
     if "edited" in sides and not is_data:
         return "differs"
@@ -1069,7 +1161,7 @@ def test_the_reference_declares_a_tolerance_and_gives_its_scale():
     data["b"] = ((), 1.0, {"tolerance": 0.1, "floor": 1.0})
     told = ["b 1 → 1.15 (tolerance 0.1)", "a 1 → 2 at tolerance = 5 (tolerance 0.6)"]
     other = data.assign(a=data.a.copy(data=[2.0]), b=data.b.copy(data=1.15))
-    assert compare.differences("a.nc", data, other) == told
+    assert [*map(str, compare.differences("a.nc", data, other))] == told
 
 
 @pytest.mark.parametrize(
@@ -1090,6 +1182,43 @@ def test_every_number_of_the_reference_is_compared_with_its_tolerance(path):
             values = OTHERS[each.dtype.kind](each.values)
             cases = [(1.1, data.assign({name: (each.dims, values, each.attrs)}))]
         for share, other in cases:
-            lines = compare.differences(path.name, data, other)
+            lines = [*map(str, compare.differences(path.name, data, other))]
             is_named = any(line.startswith(f"{name} ") for line in lines)
             assert is_named == (abs(share) > 1 and not other.equals(data)), (name, share)
+
+
+@pytest.mark.parametrize(
+    "path",
+    sorted([*ROOT.glob("figures/*.nc"), *ROOT.glob("extras/beyond/figures/*.nc")]),
+    ids=lambda path: path.name,
+)
+def test_what_is_new_along_each_dimension_of_the_reference_is_told_and_the_rest_is_compared(path):
+    """One value less or more, and the others rounded: that is the only difference. A number of the
+    others that changes is told, too. Values without coordinates belong together by their positions.
+    """
+    whole = datasets.read(path)
+    for dim in map(str, whole.dims):
+        gone = (
+            1 if any(dim in each.dims for each in whole.coords.values()) else whole.sizes[dim] - 1
+        )
+        less = whole.isel({dim: [n for n in range(whole.sizes[dim]) if n != gone]})
+        if whole.sizes[dim] < 3:
+            continue
+        for name, each in whole.coords.items():
+            if each.dtype.kind == "f" and dim in each.dims:
+                less = less.assign_coords(
+                    {name: (each.dims, less[name].values * (1 + 1e-12), each.attrs)}
+                )
+        for pair, what in (((whole, less), "missing"), ((less, whole), "new")):
+            (told,) = compare.differences(path.name, *pair)
+            assert told.what == dim and told.change.endswith(f" is {what}")
+        for name in [each for each in less.data_vars if less[each].dtype.kind == "f"]:
+            values = less[name].values.copy()
+            known = np.argwhere(np.isfinite(values))
+            if known.size and "tolerance_scale" not in less[name].attrs:
+                values[tuple(known[-1])] += 1.0
+                other = less.assign({name: (less[name].dims, values, less[name].attrs)})
+                assert [each.what for each in compare.differences(path.name, whole, other)] == [
+                    dim,
+                    name,
+                ]

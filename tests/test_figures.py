@@ -382,6 +382,19 @@ def test_two_figures_have_the_same_axes():
         assert axes.get_xlim()[0] < float(data.frequency_ratio[1])
 
 
+def test_two_figures_have_their_panels_in_the_same_place():
+    """A legend of three more lines moves no panel."""
+    with drawing.style():
+        pair = [drawing.panels(3.0, rows=2) for _ in range(2)]
+    for (figure, axes), count in zip(pair, (1, 7), strict=True):
+        for n in range(count):
+            axes[0].plot([0, 1], [0, n], label=f"a label {n}")
+        drawing.legend_below(figure)
+    drawing.on_the_same_axes([figure for figure, _ in pair])
+    for axes, same in zip(pair[0][1], pair[1][1], strict=True):
+        assert axes.get_position().bounds == same.get_position().bounds
+
+
 # Files
 
 SETTINGS = {

@@ -29,16 +29,17 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from difflib import SequenceMatcher
 from functools import cache
-from itertools import takewhile, zip_longest
+from io import BytesIO
+from itertools import chain, takewhile, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, TextIO, cast
+from typing import Any, NamedTuple, TextIO, cast
 from xml.etree import ElementTree
 
 import numpy as np
 import xarray as xr
 import yaml
-from PIL import Image
+from PIL import Image, ImageColor
 
 from paper_replication.configuration import SHOWN_BY, entries
 from paper_replication.datasets import (
@@ -48,6 +49,7 @@ from paper_replication.datasets import (
     plain,
     read,
     to_netcdf,
+    words,
     write,
 )
 from paper_replication.judgements import raised
@@ -81,11 +83,17 @@ LEFT = "no rule makes it, remove it"
 CONFLICT = "has the marks of a conflict"
 """What may be wrong with a file of one run."""
 SAME: Mapping[str, Sequence[str]] = {"made by": ["the same parameters, code and versions"]}
-STATUS = {"agrees": 0, "follows": 0, "drawn elsewhere": 0, "differs": 1, "not comparable": 2}
-"""The exit status of each verdict. A file follows if one of its datasets has another verdict. A
-picture is drawn elsewhere if the same code, or that of the main branch, drew it with another
-matplotlib.
+STATUS = dict.fromkeys(("agrees", "follows", "drawn elsewhere"), 0)
+STATUS |= {"differs": 1, "missing": 1, "not comparable": 2}
+"""The exit status of each verdict. A file is missing if only one run has it, and nothing else is
+wrong. It follows if one of its datasets has another verdict. A picture is drawn elsewhere if the
+same code, or that of the main branch, drew it with another matplotlib.
 """
+ON_PAGE = STATUS.keys() - {"agrees", "missing"}
+ROWS = 10
+"""How many differences of a file a report prints. The page has all."""
+ONLY = ("#b34700", "#0072b2")
+"""Colours of what only the first of two pictures draws, and only the second."""
 
 
 # Runs
@@ -307,38 +315,93 @@ def content_of(path: Path) -> Any:
     return path.read_bytes().replace(b"\r\n", b"\n").decode().split("\n")
 
 
-def differences(name: str, old: Any, new: Any) -> list[str]:
+class Difference(NamedTuple):
+    """What differs in a file. For a variable it is the largest change, with its place.
+
+    Attributes
+    ----------
+    what
+        The variable or attribute of a dataset, or the line of a text.
+    change, where
+        The change, and the coordinates at which it is.
+    differing, size
+        How many values differ, and how many were compared; 0 for an attribute or a text.
+    tolerance, long_name
+        Those of the variable, if it has some.
+    """
+
+    what: str
+    change: str
+    where: str = ""
+    differing: int = 0
+    size: int = 0
+    tolerance: str = ""
+    long_name: str = ""
+
+    def __str__(self) -> str:
+        tolerance = f" (tolerance {self.tolerance})" if self.tolerance else ""
+        others = f", and {self.differing - 1} more of {self.size} values"
+        return f"{self.what} {self.columns[2]}{tolerance}{others * (self.differing > 1)}"
+
+    @property
+    def columns(self) -> tuple[str, str, str]:
+        """The row of a report: what differs, how many values, and the largest change."""
+        at = f" at {self.where}" * bool(self.where)
+        return self.what, f"{self.differing} of {self.size}" * bool(self.size), self.change + at
+
+
+def differences(name: str, old: Any, new: Any) -> list[Difference]:
     """What differs in the contents of a file, which are those of `content_of`."""
     if isinstance(old, xr.Dataset):
-        lines = labels(old, new)
-        if lines:
-            others = [dim for dim in old.dims if old[dim].dtype.kind not in "UO"]
-            old, new = xr.align(old, new, join="inner", exclude=others)
-        return lines + (changes(about(old), about(new)) or values_that_differ(old, new))
+        described = [Difference(*each) for each in changed(about(old), about(new))]
+        sizes, *both = aligned(old, new)
+        return described + sizes + values_that_differ(*both)
     if old is None:
-        return ["the picture differs"]
+        return [Difference("the picture", "differs")]
     # An empty line follows the last line feed.
     number = common(old, new)
     pair = [[*lines, "the end of the text"][number] or "an empty line" for lines in (old, new)]
-    return [f"{name}, line {number + 1}: {excerpt(*pair)}"]
+    return [Difference(f"{name}, line {number + 1}:", excerpt(*pair))]
 
 
-def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
-    """What differs between two mappings.
+def changes(old: Mapping, new: Mapping) -> list[str]:
+    """What differs between two mappings, and of lists only the elements that do.
 
-    >>> changes({"grid": {"max": 10.0}, "n": 1}, {"grid": {"max": 20.0}, "n": 1})
-    ['grid.max 10.0 → 20.0']
+    >>> changes({"grid": {"max": 10.0}, "n": [1, 2]}, {"grid": {"max": 20.0}, "n": [1, 2, 3]})
+    ['grid.max 10.0 → 20.0', 'n 3 is new']
     """
-    lines = []
+    return [" ".join(each) for each in changed(old, new)]
+
+
+def changed(old: Mapping, new: Mapping, above: str = "") -> Iterator[tuple[str, str]]:
+    """Yield what differs between two mappings: the key and the change."""
     for key in sorted({*old, *new}):
         before, after = (each.get(key, "absent") for each in (old, new))
         nested = [isinstance(value, Mapping) for value in (before, after)]
         if all(nested):
-            lines += changes(before, after, f"{above}{key}.")
+            yield from changed(before, after, f"{above}{key}.")
         elif before != after:
-            what = "is missing" if nested[0] else "is new" if nested[1] else f"{before} → {after}"
-            lines.append(f"{above}{key} {what}")
-    return lines
+            what = "is missing" if nested[0] else "is new" if nested[1] else ""
+            if not what and isinstance(before, list) and isinstance(after, list):
+                what = elements(before, after)
+            yield f"{above}{key}", what or f"{words(before)} → {words(after)}"
+
+
+def elements(old: list, new: list) -> str:
+    """The elements of two lists that only one has; empty if both have the same ones.
+
+    >>> elements([0.5, 0.65], [0.5, 0.7]), elements([1, 2, 5], [1, 3]), elements([1, 2], [2, 1])
+    ('0.65 → 0.7', '3 is new, 2, 5 are missing', '')
+    """
+    came, went = [x for x in new if x not in old], [x for x in old if x not in new]
+    if came and len(old) == len(new) and len(came) == len(went):
+        return f"{words(went)} → {words(came)}"
+    return ", ".join(
+        f"{words(some[:8])}{f' and {len(some) - 8} more' * (len(some) > 8)} "
+        f"{'is' if len(some) == 1 else 'are'} {kind}"
+        for some, kind in ((came, "new"), (went, "missing"))
+        if some
+    )
 
 
 def about(data: xr.Dataset) -> dict:
@@ -349,76 +412,127 @@ def about(data: xr.Dataset) -> dict:
         | {
             "role": "coordinate" if name in data.coords else "variable",
             "type": "text" if variable.dtype.kind in "UO" else str(variable.dtype),
-            "sizes": str(dict(variable.sizes)),
+            "dimensions": [*variable.dims],
         }
         for name, variable in data.variables.items()
     }
     return plain(attributes | variables)
 
 
-def labels(old: xr.Dataset, new: xr.Dataset) -> list[str]:
-    """Name the texts along dimensions that only one of two datasets has.
+def labels(data: xr.Dataset, dim: str) -> list[str]:
+    """The coordinates of the values along a dimension, or their positions if it has none.
+
+    >>> orbits = xr.Dataset(coords={"n": ("orbit", [1, 2]), "restitution": ("orbit", [0.5, 0.65])})
+    >>> labels(orbits, "orbit"), labels(orbits.swap_dims(orbit="n"), "n")
+    (['n = 1, restitution = 0.5', 'n = 2, restitution = 0.65'], ['n = 1', 'n = 2'])
+    """
+    texts = [[f"{name} = {shown(x)}" for x in data[name].values] for name in along(data, dim)]
+    return [", ".join(parts) for parts in zip(*texts, strict=True)]
+
+
+def along(data: xr.Dataset, dim: str) -> list[str]:
+    """The names of the coordinates that tell the values along a dimension apart: its own, or all
+    others, or else the dimension, whose values are positions.
+    """
+    others = [str(name) for name, each in data.coords.items() if each.dims == (dim,)]
+    return [dim] if dim in data.coords else others or [dim]
+
+
+def aligned(old: xr.Dataset, new: xr.Dataset) -> tuple[list[Difference], xr.Dataset, xr.Dataset]:
+    """What only one of two datasets has along its dimensions, and the parts that both have.
+
+    Along a dimension of another size, and along one with other texts, values belong together if
+    their coordinates agree within the tolerance.
 
     >>> old, new = (xr.Dataset(coords={"claim": names}) for names in (["high"], ["high", "low"]))
-    >>> labels(old, new), labels(new, old)
-    (['claim low is new'], ['claim low is missing'])
+    >>> [str(each) for one, other in ((old, new), (new, old)) for each in aligned(one, other)[0]]
+    ['claim low is new', 'claim low is missing']
     """
-    lines = []
-    for dim in sorted(map(str, old.dims)):
-        if dim in new.dims and old[dim].dtype.kind in "UO":
-            before, after = (each[dim].values.tolist() for each in (old, new))
-            lines += [f"{dim} {label} is new" for label in after if label not in before]
-            lines += [f"{dim} {label} is missing" for label in before if label not in after]
-    return lines
+    found = []
+    for dim in sorted({*map(str, old.dims)} & {*map(str, new.dims)}):
+        is_as_long = old.sizes[dim] == new.sizes[dim]
+        if is_as_long and old[dim].dtype.kind not in "UO":
+            continue
+        same = np.ones((old.sizes[dim], new.sizes[dim]), bool)
+        for name in {*along(old, dim)} & {*along(new, dim)}:
+            y, x = (each[name].values for each in (old, new))
+            same &= far(x[None, :], y[:, None], old[name].attrs) <= 1
+        # Of several equal coordinates, the first of both belong together.
+        same &= np.cumsum(same, 0) == np.cumsum(same, 1)
+        kept = same.any(1), same.any(0)
+        if is_as_long and all(map(np.all, kept)):
+            continue
+        only = [
+            [text.removeprefix(f"{dim} = ") for text in np.array(labels(each, dim))[~both]]
+            for each, both in zip((old, new), kept, strict=True)
+        ]
+        found.append(Difference(dim, elements(*only)))
+        places = np.nonzero(same)
+        old, new = (each.isel({dim: place}) for each, place in zip((old, new), places, strict=True))
+    return found, old, new
 
 
-def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[str]:
-    """Where numbers and texts of a dataset differ: a line for each variable.
+def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[Difference]:
+    """The largest change of each variable of two datasets that both have with the same dimensions.
 
-    Single values, such as a threshold, are first, then the furthest. Both datasets have the same
-    variables.
+    Single values, such as a threshold, are first, then the variables that changed most.
     """
-    far = {name: distances(name, old, new) for name in map(str, old.variables)}
-    ordered = sorted(far, key=lambda name: (far[name].ndim > 0, -far[name].max(initial=0.0)))
-    return [
-        furthest_value(old[name], new[name], far[name]) for name in ordered if (far[name] > 1).any()
-    ]
+    distances = {
+        str(name): distance(str(name), old, new)
+        for name, each in old.variables.items()
+        if name in new.variables and each.dims == new[name].dims
+    }
+    ordered = sorted(
+        (name for name, far in distances.items() if (far > 1).any()),
+        key=lambda name: (distances[name].ndim > 0, -distances[name].max()),
+    )
+    return [largest_change(old, new, name, distances[name]) for name in ordered]
 
 
-def furthest_value(old: xr.DataArray, new: xr.DataArray, far: np.ndarray) -> str:
-    """The value of a variable that differs most, and how many others differ."""
-    worst = np.unravel_index(np.argmax(far), far.shape)
-    labels = [
-        f"{dim} = {shown(old[dim].values[index])}"
-        for dim, index in zip(old.dims, worst, strict=True)
-    ]
-    others = np.count_nonzero(far > 1) - 1
-    parts = [
-        f"{old.name} {excerpt(old.values[worst], new.values[worst])}",
-        f" at {', '.join(labels)}" if labels else "",
-        f" (tolerance {old.attrs['tolerance']:g})" if "tolerance" in old.attrs else "",
-        f", and {others} more of {far.size} values" if others else "",
-    ]
-    return "".join(parts)
-
-
-def distances(name: str, old: xr.Dataset, new: xr.Dataset) -> np.ndarray:
-    """How far a variable is from the reference, in multiples of the tolerance declared there.
-
-    A text, NaN or infinity is infinitely far from another.
+def largest_change(old: xr.Dataset, new: xr.Dataset, name: str, far: np.ndarray) -> Difference:
+    """The value of a variable that changed most, of those that are numbers in both datasets if
+    there are some.
     """
-    x = new[name].values
-    y = old[name].values
-    missing = new[name].isnull().values & old[name].isnull().values
-    unequal = np.where((x != y) & ~missing, np.inf, 0.0)
-    if y.dtype.kind != "f":
-        return unequal
+    finite = np.where(np.isfinite(far), far, 0.0)
+    worst = np.unravel_index(np.argmax(finite if (finite > 1).any() else far), far.shape)
+    before, after, given = old[name].values[worst], new[name].values[worst], old[name].attrs
+    places = zip(map(str, old[name].dims), worst, strict=True)
+    return Difference(
+        name,
+        excerpt(before, after),
+        ", ".join(labels(old, dim)[index] for dim, index in places),
+        int(np.count_nonzero(far > 1)),
+        far.size,
+        f"{given['tolerance']:g}" if "tolerance" in given else "",
+        given.get("long_name", ""),
+    )
+
+
+def distance(name: str, old: xr.Dataset, new: xr.Dataset) -> np.ndarray:
+    """How far a variable is from the reference, as `far` says."""
     given = old[name].attrs
-    scale = np.maximum(abs(y), given["floor"])
-    if "tolerance_scale" in given:
-        scale = abs(old[given["tolerance_scale"]].values)
+    other = given.get("tolerance_scale")
+    scale = abs(old[other].values) if other else None
+    return far(new[name].values, old[name].values, given, scale)
+
+
+def far(x: np.ndarray, y: np.ndarray, given: Mapping, scale: Any = None) -> np.ndarray:
+    """How far values x are from y, in multiples of the tolerance that the attributes of y declare.
+
+    Whole numbers that differ are further than their tolerance, one half. A text, NaN or infinity is
+    infinitely far from another.
+    """
+    if x.dtype.kind not in "fi" or y.dtype.kind not in "fi":
+        return np.where(x.astype(object) != y.astype(object), np.inf, 0.0)
+    unequal = np.where((x != y) & ((x == x) | (y == y)), np.inf, 0.0)
+    if y.dtype.kind == "i":
+        tolerance: Any = 0.5
+    else:
+        if scale is None:
+            scale = np.maximum(abs(y), given["floor"])
+        tolerance = given["tolerance"] * scale
     with np.errstate(all="ignore"):
-        ratio = abs(x - y) / (given["tolerance"] * scale)
+        ratio = abs(x - y) / tolerance
     return np.where(np.isnan(ratio), unequal, ratio)
 
 
@@ -492,13 +606,25 @@ class Finding:
     """
 
     verdict: str
-    differences: Sequence[str] = ()
+    differences: Sequence[Difference] = ()
     causes: Mapping[str, Sequence[str]] = field(default_factory=dict)
     sentences: Sequence[tuple[str, str]] = ()
 
-    def __str__(self) -> str:
-        causes = [f"{kind}: {', '.join(details)}" for kind, details in self.causes.items()]
-        return "; ".join([*self.differences[:1], *causes])
+    def lines(self, name: str) -> tuple[str, ...]:
+        """The finding on a file of this name: a line, and a table of several differences, of which
+        the first `ROWS` have a row.
+        """
+        several = len(self.differences) > 1
+        told = [f"{len(self.differences)} differences"] * several or [*map(str, self.differences)]
+        told += [f"{kind}: {', '.join(details)}" for kind, details in self.causes.items()]
+        rows, others = self.differences[: ROWS * several], self.differences[ROWS:]
+        widths = [
+            max(map(len, texts)) for texts in zip(*(row.columns for row in rows), strict=True)
+        ]
+        lines = ["  ".join(["", *map(str.ljust, row.columns, widths)]).rstrip() for row in rows]
+        if others:
+            lines.append(f"  and {', '.join(row.what for row in others)}")
+        return f"{name}: {'; '.join(told)}", *lines
 
 
 def finding(old: Side, new: Side, checkout: Checkout | None, differing: Collection[str]) -> Finding:
@@ -508,9 +634,10 @@ def finding(old: Side, new: Side, checkout: Checkout | None, differing: Collecti
     """
     kinds = {**old.wrong, **new.wrong}
     wrong = {kind: [*old.wrong.get(kind, ()), *new.wrong.get(kind, ())] for kind in kinds}
-    unknown = wrong.keys() & {UNREADABLE, UNNAMED, LEFT} or len(wrong.get(MISSING, ())) == 2
-    if unknown or MISSING in wrong:
-        return Finding("not comparable" if unknown else "differs", causes=wrong)
+    if wrong.keys() & {UNREADABLE, UNNAMED, LEFT} or len(wrong.get(MISSING, ())) == 2:
+        return Finding("not comparable", causes=wrong)
+    if MISSING in wrong:
+        return Finding("missing" if len(wrong) == 1 else "differs", causes=wrong)
     is_data = isinstance(new.contents, xr.Dataset)
     try:
         lines = (
@@ -535,7 +662,11 @@ def finding(old: Side, new: Side, checkout: Checkout | None, differing: Collecti
 
 
 def of_dataset(
-    lines: list[str], old: Side, new: Side, checkout: Checkout | None, differing: Collection[str]
+    lines: list[Difference],
+    old: Side,
+    new: Side,
+    checkout: Checkout | None,
+    differing: Collection[str],
 ) -> Finding:
     """The verdict on a dataset, in which these lines differ."""
     if not lines and old.record["parameters"] == new.record["parameters"]:
@@ -544,21 +675,25 @@ def of_dataset(
 
 
 def of_product(
-    lines: list[str], old: Side, new: Side, checkout: Checkout | None, differing: Collection[str]
+    lines: list[Difference],
+    old: Side,
+    new: Side,
+    checkout: Checkout | None,
+    differing: Collection[str],
 ) -> Finding:
     """The verdict on a picture, a table, a text or a page."""
     if not lines:
         return Finding("agrees")
+    # A text with another title is another text.
+    is_text = new.path.suffix == ".md" and old.contents[0] == new.contents[0]
+    pairs = sentences(old.contents, new.contents) if is_text else []
     if new.record["data"].keys() & {*differing}:
-        # A text with another title is another text.
-        is_text = new.path.suffix == ".md" and old.contents[0] == new.contents[0]
-        changed = sentences(old.contents, new.contents) if is_text else []
-        return Finding("follows", sentences=changed)
+        return Finding("follows", sentences=pairs)
     if old.contents is None and drawn_elsewhere(old.record, new.record, checkout):
         return Finding("drawn elsewhere")
     if rounded(old, new, checkout):
         return Finding("agrees")
-    return Finding("differs", lines, what_differs(old, new, checkout, differing))
+    return Finding("differs", lines, what_differs(old, new, checkout, differing), pairs)
 
 
 def drawn_elsewhere(old: Mapping, new: Mapping, checkout: Checkout | None) -> bool:
@@ -636,11 +771,6 @@ class Report:
         return {file: each for file, each in self.found.items() if each.verdict in verdicts}
 
     @property
-    def findings(self) -> dict[str, Finding]:
-        """The files that differ or cannot be compared."""
-        return self.those("differs", "not comparable")
-
-    @property
     def status(self) -> int:
         """The exit status: 1 if a file differs, else 2 if one is not comparable or none exists."""
         found = {STATUS[each.verdict] for each in self.found.values()}
@@ -652,8 +782,28 @@ class Report:
 
     def lines(self) -> list[str]:
         """What is wrong, by name. Both pictures of a figure have the same line."""
-        found = self.findings.items()
-        return list(dict.fromkeys(f"{Path(file).stem}: {finding}" for file, finding in found))
+        found = self.those("differs", "not comparable").items()
+        blocks = dict.fromkeys(each.lines(Path(file).stem) for file, each in found)
+        return [*chain.from_iterable(blocks), *self.missing()]
+
+    def shown(self) -> dict[str, dict[str, Finding]]:
+        """The files that the page shows, by name, datasets first."""
+        by_name: dict[str, dict[str, Finding]] = {}
+        for file, each in self.those(*ON_PAGE).items():
+            if each.causes or each.sentences or file.endswith(".png"):
+                by_name.setdefault(Path(file).stem, {})[file] = each
+        return by_name
+
+    def missing(self) -> list[str]:
+        """A line for each run that lacks files which the other one has: a few, or how many."""
+        lines = []
+        for index, run in enumerate((self.old, self.new)):
+            those = self.those("missing")
+            files = [file for file in those if MISSING in self.sides[file][index].wrong]
+            names = sorted({Path(file).stem for file in files})
+            what = f"{len(files)} files of {', '.join(names)}" if files[3:] else ", ".join(files)
+            lines += [f"missing in {run.label}: {what}"] * bool(files)
+        return lines
 
     def printed(self, template: str, **more: Any) -> str:
         """The report as a template prints it, with invisible characters escaped."""
@@ -940,8 +1090,15 @@ def main(project: Project, arguments: list[str]) -> int:
         "The last line is the path of a page.",
     )
     parser.add_argument("run", type=Path, help="a folder with results, or a zip file of it")
-    parser.add_argument("other", type=Path, nargs="?", help="compare this run with the first one")
-    paths = [path for path in vars(parser.parse_args(arguments)).values() if path]
+    parser.add_argument(
+        "other",
+        nargs="*",
+        help="a second run, compared with the first; names of figures and tables",
+    )
+    given = parser.parse_args(arguments)
+    is_second = bool(given.other) and Path(given.other[0]).exists()
+    paths = [given.run, *map(Path, given.other[:is_second])]
+    names = given.other[is_second:]
     with TemporaryDirectory() as unpacked:
         try:
             folders = [
@@ -956,7 +1113,9 @@ def main(project: Project, arguments: list[str]) -> int:
         is_own = new.folder.resolve() == (project.top / "results").resolve()
         checkout = Checkout(project, main_branch(project.checkout), config if is_own else None)
         judged_by = checkout if len(runs) == 1 else None
-        report = compare(project, old, new, judged_by)
+        report = compare(project, old, new, judged_by, names)
+        if unknown := {*names} - {Path(file).stem for file in report.found}:
+            parser.error(f"{', '.join(sorted(unknown))}: neither a run nor a name in {old.label}")
         if found := [*obstacles(project, report, judged_by)]:
             parser.error("; ".join(found))
         # No file of somebody else lies there.
@@ -986,17 +1145,37 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
     return save_report(project, report, results / "diff", stream)
 
 
-def pictures_of(project: Project, report: Report, file: str) -> list[bytes]:
-    """The pictures of both sides as PNG. If it is the datasets that differ, they are drawn by
-    today's code, with the same axes.
+def drawn(project: Project, report: Report, file: str) -> list[bytes]:
+    """The pictures of both sides as PNG, and one of both over each other. If it is the datasets
+    that differ, they are drawn by today's code, with the same axes.
     """
     paths = [side.path for side in report.sides[file]]
+    pictures = [path.read_bytes() for path in paths if path.is_file()]
     if report.found[file].verdict == "follows":
         with suppress(Exception):  # Whatever reading and drawing a dataset of other code raises.
             shown = report.sides[file][1].shows
             data = [read(path.with_name(f"{shown}.nc")) for path in paths]
-            return project.side_by_side(paths[0].stem, data)
-    return [path.read_bytes() for path in paths if path.is_file()]
+            pictures = project.side_by_side(paths[0].stem, data)
+    return pictures + over_each_other(pictures)
+
+
+def over_each_other(pictures: Sequence[bytes]) -> list[bytes]:
+    """Two pictures of one size as one picture, as PNG; none if their sizes differ.
+
+    What both draw is grey. What only the first one draws has the first colour of `ONLY`, and what
+    only the second one draws the second colour.
+    """
+    with suppress(Exception):  # Whatever readers raise for a damaged picture.
+        images = [Image.open(BytesIO(each)).convert("RGB") for each in pictures]
+        first, second = np.stack([np.asarray(each, float) for each in images])
+        shown = 255 - 0.3 * (255 - np.maximum(first, second)).max(-1, keepdims=True)
+        for gone, colour in zip((second - first, first - second), ONLY, strict=True):
+            share = np.clip(gone / 255, 0, 1).max(-1, keepdims=True)
+            shown = (1 - share) * shown + share * ImageColor.getrgb(colour)
+        with BytesIO() as picture:
+            Image.fromarray(shown.astype(np.uint8)).save(picture, "PNG")
+            return [picture.getvalue()]
+    return []
 
 
 def save_report(project: Project, report: Report, folder: Path, stream: TextIO) -> int:
@@ -1005,15 +1184,17 @@ def save_report(project: Project, report: Report, folder: Path, stream: TextIO) 
     Returns the exit status.
     """
     pictures = {
-        file: [base64.b64encode(each).decode() for each in pictures_of(project, report, file)]
-        for file, finding in report.found.items()
-        if file.endswith(".png") and finding.verdict != "agrees"
+        Path(file).stem: [base64.b64encode(each).decode() for each in drawn(project, report, file)]
+        for file in report.those(*ON_PAGE)
+        if file.endswith(".png")
     }
     page = folder.resolve() / "index.html"
     back = (page.parents[1] / "index.html").is_file()
     text = report.printed("diff.txt.j2")
     try:
-        write(page, report.printed("diff.html.j2", pictures=pictures, back=back).encode())
+        write(
+            page, report.printed("diff.html.j2", pictures=pictures, only=ONLY, back=back).encode()
+        )
         write(folder / "report.txt", f"{text}{page}\n".encode())
         print(f"{text}{page}", file=stream)
     except OSError as error:

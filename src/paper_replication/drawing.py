@@ -19,6 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.transforms import Bbox
 
 from paper_replication.datasets import whole
 
@@ -176,12 +177,22 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
 
 
 def on_the_same_axes(figures: Sequence[Figure]) -> list[bytes]:
-    """Return figures of the same kind as PNG, each panel with limits that hold those of all."""
+    """Return figures of the same kind as PNG, each panel with limits that hold those of all, and in
+    the place that it can have in all: a longer legend moves panels.
+    """
     for panels_of_all in zip(*(figure.axes for figure in figures), strict=True):
         x = [axes.get_xlim() for axes in panels_of_all]
         y = [axes.get_ylim() for axes in panels_of_all]
         for axes in panels_of_all:
             axes.set(xlim=(np.min(x), np.max(x)), ylim=(np.min(y), np.max(y)))
+    for figure in figures:
+        with style():
+            figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+    for panels_of_all in zip(*(figure.axes for figure in figures), strict=True):
+        low, high = np.swapaxes([axes.get_position().get_points() for axes in panels_of_all], 0, 1)
+        for axes in panels_of_all:
+            axes.set_position(Bbox([low.max(0), high.min(0)]))
     pictures = []
     for figure in figures:
         with style(), BytesIO() as picture:

@@ -3,8 +3,8 @@
 Snakemake runs this script for the target `diff`. Results from elsewhere, such as those of
 continuous integration, are compared with the reference, or with each other:
 
-    python workflow/scripts/compare.py RUN
-    python workflow/scripts/compare.py RUN OTHER
+    python workflow/scripts/compare.py RUN [NAME ...]
+    python workflow/scripts/compare.py RUN OTHER [NAME ...]
 
 The exit status is 0 if what was asked for is present and agrees, 1 if something differs, and 2 if
 it could not be compared.

@@ -3,8 +3,8 @@
 Snakemake runs this script for the target `diff`; results from elsewhere are compared with the
 reference, or with each other:
 
-    python workflow/scripts/compare.py RUN
-    python workflow/scripts/compare.py RUN OTHER
+    python workflow/scripts/compare.py RUN [NAME ...]
+    python workflow/scripts/compare.py RUN OTHER [NAME ...]
 """
 
 import sys

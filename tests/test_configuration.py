@@ -25,6 +25,10 @@ import pytest
             "continuation.fig08.frequency_ratio.0: '1e4' is not of type 'number' (frequency",
         ),
         (
+            "continuation: {fig08: {frequency_ratio: [2, 3, 4, 5, 6, 7]}}",
+            "continuation.fig08.frequency_ratio: [2, 3, 4, 5, 6, 7] is too long (a panel for each",
+        ),
+        (
             "apparent_restitution: {fig06: {cases: [{restitution: .nan, amplitude: 1.0}]}}",
             "apparent_restitution.fig06.cases.0.restitution: .nan must be a number",
         ),

@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import NDArray
 
 from paper_replication.datasets import parameters
@@ -99,22 +100,37 @@ def parted(values: Mapping[str, Iterable[float]]) -> tuple[str, list[str]]:
 
 
 def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
-    """Format the horizontal axis as a logarithmic axis of ϖ with plain numbers.
+    """Format the horizontal axis as a logarithmic axis of ϖ."""
+    axes.set(xscale="log", xlim=(ratio.min(), ratio.max()))
+    number_ratios(axes.xaxis, ratio)
+    axes.set_xlabel(r"frequency ratio $\varpi$")
+    # In a column of panels, only the lowest panel has the label.
+    axes.label_outer()
 
-    The axis has numbers at powers of ten. It also has a number at each end that is far enough from
-    a power of ten.
+
+def number_ratios(axis: Axis, ratio: xr.DataArray) -> None:
+    """Number a logarithmic axis of ϖ at powers of ten, and at each end that is far enough from
+    them; numbers from 10⁴ are wider, because they are powers of ten.
     """
     ends = np.array([ratio.min(), ratio.max()], dtype=float)
     low, high = np.log10(ends)
     powers = np.arange(np.ceil(low), np.floor(high) + 1)
     distance = np.abs(np.log10(ends)[:, np.newaxis] - powers).min(axis=1, initial=np.inf)
-    alone = ends[distance > 0.1 * (high - low)]
-    axes.set(xscale="log", xlim=ends, xticks=np.sort([*10**powers, *alone]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
-    axes.set_xlabel(r"frequency ratio $\varpi$")
-    # In a column of panels, only the lowest panel has the label.
-    axes.label_outer()
+    alone = ends[distance > np.where(ends < 1e4, 0.1, 0.2) * (high - low)]
+    axis.set_ticks(np.sort([*10**powers, *alone]))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: plain_number(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def plain_number(value: float) -> str:
+    r"""Return a number with four digits, and in LaTeX if it is at least 10⁴.
+
+    Examples
+    --------
+    >>> plain_number(1000.0), plain_number(250000.0)
+    ('1000', '$2.5\\times10^{5}$')
+    """
+    return latex_number(value) if value < 1e4 else f"${latex_number(value)}$"
 
 
 def mark_look(kind: str) -> Look:

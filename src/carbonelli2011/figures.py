@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from carbonelli2011 import paper
@@ -33,6 +34,7 @@ from carbonelli2011.curves import (
     mark_look,
     mark_special,
     named,
+    number_ratios,
     parted,
     restitution_branch,
     right_end,
@@ -45,15 +47,20 @@ from paper_replication.drawing import (
     COLOURS,
     DASHES,
     GUIDE,
+    LEGEND_ROWS,
+    POINTS,
+    WIDTH,
     Look,
     colours,
     latex_number,
     legend_below,
     name_at_right,
+    name_points,
     pale,
     panels,
     sample,
     style,
+    thin,
 )
 from paper_replication.texts import share_text
 
@@ -171,8 +178,13 @@ def fig03(data: xr.Dataset) -> Figure:
             absent.append(label(n=n))
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
     axes.set_xlim(0, amplitude_max)
+    axes.autoscale_view()
     for chosen in enlarged:
-        enlarge_doublings(axes, *chosen)
+        if not any(
+            line.get_path().transformed(axes.transLimits).intersects_bbox(INSET, filled=False)
+            for line in axes.lines
+        ):
+            enlarge_doublings(axes, *chosen)
     axes.set_title(title(data, "restitution") + no_branch(absent))
     branch_legend(figure, both_phases=False)
     figure.draw_without_rendering()
@@ -180,12 +192,16 @@ def fig03(data: xr.Dataset) -> Figure:
     return figure
 
 
+INSET = Bbox.from_bounds(0.74, 0.35, 0.26, 0.3)
+"""Room for the enlargement with its numbers, as shares of the panel."""
+
+
 def enlarge_doublings(axes: Axes, branch: xr.Dataset, family: xr.Dataset, colour: str) -> None:
     """Enlarge the period doublings of the exact map and of Eq. 8, inside the loops of the branches.
 
     Eq. 8 belongs to the map of Holmes, so the picture of the paper differs here.
     """
-    inset = axes.inset_axes((0.74, 0.4, 0.25, 0.22))
+    inset = axes.inset_axes((0.75, 0.43, 0.24, 0.22))
     draw_branch(inset, branch, "phase", colour, width=1.2)
     mark_special(inset, branch, "phase", colour)
     amplitudes = family.period_doubling_amplitude
@@ -193,7 +209,13 @@ def enlarge_doublings(axes: Axes, branch: xr.Dataset, family: xr.Dataset, colour
     for values, limit in ((amplitudes, inset.set_xlim), (phases, inset.set_ylim)):
         margin = 0.5 * np.ptp(values.values)
         limit(values.min() - margin, values.max() + margin)
-    inset.set_xticks(amplitudes, [f"{value:.3f}" for value in amplitudes.values], size="small")
+    digits = max(3, -int(np.floor(np.log10(np.ptp(amplitudes.values)))))
+    texts = [f"{value:.{digits}f}" for value in amplitudes.values]
+    inset.set_xticks(amplitudes[:1], texts[:1], size="small")
+    inset.set_xticks(amplitudes[1:], texts[1:], size="small", minor=True)
+    # Longer numbers are below each other. The other lengths are those of the first tick.
+    lower = 9 if len(texts[1]) > len("1.234") else 0
+    inset.tick_params(which="minor", length=3.5, width=0.8, pad=3.5 + lower)
     inset.set_yticks([])
     axes.indicate_inset_zoom(inset, edgecolor="0.5")
 
@@ -221,6 +243,9 @@ def fig10(data: xr.Dataset) -> Figure:
     axes.set_ylabel(r"bouncing-off velocity $z'_b$")
     first = data.isel(case=np.argmax(data.bounce_velocity.notnull().any("frequency_ratio").values))
     draw_cases(below, data, 100 * (data.bounce_velocity - first.bounce_velocity) / limit)
+    # The names of the upper panel: where the first case has no orbit, there is no difference.
+    for line in below.lines:
+        line.set_label("_")
     below.set_title("")
     below.set_ylabel("difference from\n" + rf"{label(amplitude=first.amplitude)}, % of $n\pi$")
     legend_below(figure)
@@ -260,12 +285,13 @@ def fig13(data: xr.Dataset) -> Figure:
     star: Look = {"marker": "*", "markersize": 9, "linestyle": "none"}
     limits = np.array([data.restitution_impact_velocity, data.restitution_bounce_velocity])
     labelled = np.argmax(data.phase.notnull().any("frequency_ratio").values)
+    labels: list[tuple[float, tuple[float, float], int]] = []
     for k, colour in enumerate(shades):
         case = data.isel(case=k)
         marked = case.interp(frequency_ratio=LABELLED)
         for phase, velocity, look, beyond in (
-            ("phase", "impact_velocity", start, (7, "left")),
-            ("release_phase", "bounce_velocity", end, (-7, "right")),
+            ("phase", "impact_velocity", start, 2),
+            ("release_phase", "bounce_velocity", end, 3),
         ):
             line = {"color": colour, "linestyle": look["linestyle"]}
             line_points = case[phase].values / np.pi, case[velocity].values / np.pi
@@ -273,7 +299,9 @@ def fig13(data: xr.Dataset) -> Figure:
             dots = look | line | {"linestyle": "none"}
             axes.plot(marked[phase] / np.pi, marked[velocity] / np.pi, **dots)
             if k == labelled:
-                name_ratios(axes, marked[phase] / np.pi, marked[velocity] / np.pi, beyond)
+                places = zip(marked[phase] / np.pi, marked[velocity] / np.pi, strict=True)
+                # In turn above and below the curve, which descends, and the last beyond its end.
+                labels += zip(LABELLED, places, (0, 1, 0, 1, beyond), strict=True)
         phases = [float(case.restitution_phase) / np.pi] * 2
         axes.plot(phases, limits / np.pi, color=colour, zorder=4, **star)
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball $z'/\pi$")
@@ -293,26 +321,13 @@ def fig13(data: xr.Dataset) -> Figure:
     shown = kinds_of(data)[exists]
     others = [kind for kind in KINDS if kind != "stable" and kind in shown]
     entries |= {kind: sample(**look_of(kind)) for kind in others}
-    legend_below(figure, entries, columns=1)
+    legend_below(figure, entries, columns=1 if len(entries) <= LEGEND_ROWS else 2)
+    figure.draw_without_rendering()
+    known = [each for each in labels if np.isfinite(each[1]).all()]
+    # The ends of the curves come first.
+    known.sort(key=lambda each: each[0] not in (LABELLED[0], LABELLED[-1]))
+    name_points(axes, [(label(frequency_ratio=each), *where) for each, *where in known])
     return figure
-
-
-def name_ratios(
-    axes: Axes, phases: xr.DataArray, velocities: xr.DataArray, beyond: tuple[int, str]
-) -> None:
-    """Label the marks of `LABELLED` in turn above and below their curve, which descends.
-
-    The last label is beyond the end of the curve, at an offset in points and an alignment.
-    """
-    above = (5, 1), "left", "bottom"
-    below = (-5, -1), "right", "top"
-    last = (beyond[0], 0), beyond[1], "center"
-    sides = (above, below, above, below, last)
-    for phase, velocity, side in zip(phases, velocities, sides, strict=True):
-        text = label(frequency_ratio=phase.frequency_ratio)
-        offset, horizontal, vertical = side
-        look: Look = {"textcoords": "offset points", "ha": horizontal, "va": vertical}
-        axes.annotate(text, (phase, velocity), offset, **look)
 
 
 # Permanent contact
@@ -554,7 +569,9 @@ Branch = tuple[str, xr.Dataset, str]
 def fig08(data: xr.Dataset) -> Figure:
     """Branches over Λ, a panel for each ϖ: phases of the table at the start and end of contact."""
     contacts = contact_branches(data)
-    return domains(data, [[branch] for branch in contacts], height=2.5 * len(contacts))
+    # At most the height of a page.
+    height = np.clip(2.5 * len(contacts), 3.2, 9.5)
+    return domains(data, [[branch] for branch in contacts], height)
 
 
 def fig09(data: xr.Dataset) -> Figure:
@@ -613,8 +630,9 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
 
 
 def no_branch(absent: list[str]) -> str:
-    """Return the line of a title that names branches without orbits."""
-    return f"\nno branch for {', '.join(absent)}" if absent else ""
+    """Return the lines of a title that name branches without orbits."""
+    lines = [", ".join(absent[k : k + 3]) for k in range(0, len(absent), 3)]
+    return "\nno branch for " + ",\n".join(lines) if absent else ""
 
 
 def has_orbits(branch: xr.Dataset) -> bool:
@@ -716,7 +734,9 @@ def validity_map(data: xr.Dataset) -> Figure:
     """
     given = parameters(data)
     shape: Look = {"rows": data.sizes["quantity"], "columns": data.sizes["n"], "squeeze": False}
-    figure, grid = panels(5.6, **shape, sharex=True, sharey=True)
+    # Further columns make the picture wider.
+    width = WIDTH + 0.8 * max(0, data.sizes["n"] - 3)
+    figure, grid = panels(5.6, **shape, width=width, sharex=True, sharey=True)
     for row, quantity in zip(grid, data.quantity.values, strict=True):
         for axes, n in zip(row, data.n.values, strict=True):
             draw_failures(axes, data.sel(quantity=quantity, n=n), given["tolerance"])
@@ -736,11 +756,16 @@ def validity_map(data: xr.Dataset) -> Figure:
         multialignment="center",
     )
     advised = rf"$\varpi={latex_number(given['advised'])}$"
+    space = " " if given["advised"] < 1e4 else "\n"
     entries = {
-        f"{advised} is not enough: on the share above the panel": Patch(facecolor=CONTACT),
+        f"{advised} is not enough:{space}on the share above the panel": Patch(facecolor=CONTACT),
         f"the contact of {advised} has doubled the period": Patch(**DOUBLED),
     }
     legend_below(figure, entries, columns=1)
+    figure.draw_without_rendering()
+    # A second layout would move the panels a little.
+    figure.set_layout_engine("none")
+    thin(grid[-1, 0].xaxis)
     return figure
 
 
@@ -754,19 +779,18 @@ def regimes(data: xr.Dataset) -> Figure:
     ratio = data.frequency_ratio
     first, last = data.amplitude.values[[0, -1]]
     rest = float(data.restitution_threshold)
-    figure, (line, axes) = panels(4.3, rows=2, sharex=True, height_ratios=(1, 5))
+    figure, (line, axes) = panels(4.5, rows=2, sharex=True, height_ratios=(1, 5))
     bars = (
         (0, rest, "a ball at rest stays at rest"),
         (first, last, f"stable {given['n']}-T orbit"),
     )
-    for height, (start, end, words) in enumerate(bars):
+    for height, (start, end, _) in enumerate(bars):
         line.barh(height, end - start, left=start, height=0.7, color="0.85")
-        line.text((start + end) / 2, height, words, ha="center", va="center")
     for kind, end in (("saddle-node", first), ("period doubling", last)):
         line.plot(end, 1, color="black", label=kind, **mark_look(kind))
-    line.text(0, 1, "restitution model", va="center")
-    axes.text(0.03, 0.95, "spring-damper model", transform=axes.transAxes, va="top")
-    line.set_title(f"maximum height in flight, {title(data, 'n', 'restitution')}")
+    figure.suptitle(f"maximum height in flight, {title(data, 'n', 'restitution')}")
+    line.set_title("restitution model", loc="left")
+    axes.set_title("spring-damper model", loc="left")
     axes.set_xlim(0, 1.1 * max(last, rest))
     line.axis("off")
 
@@ -787,9 +811,25 @@ def regimes(data: xr.Dataset) -> Figure:
     )
     axes.set(xlabel=r"amplitude $\Lambda$", yscale="log", ylim=ratio[[0, -1]])
     axes.set_ylabel(r"frequency ratio $\varpi$ of the contact")
-    axes.yaxis.set_major_formatter("{x:g}")
+    number_ratios(axes.yaxis, ratio)
     legend_below(figure)
+    figure.draw_without_rendering()
+    for height, (start, end, words) in enumerate(bars):
+        name_bar(line, height, start, end, words)
     return figure
+
+
+def name_bar(axes: Axes, height: float, start: float, end: float, words: str) -> None:
+    """Write words into a bar, or beside it where there is more room."""
+    text = axes.text((start + end) / 2, height, words, ha="center", va="center")
+    left, right = axes.transData.transform([(start, height), (end, height)])[:, 0]
+    # The marks at the ends need room, too.
+    if text.get_window_extent().width + 12 / POINTS * axes.figure.dpi > right - left:
+        low, high = axes.get_xlim()
+        beside = (start, (-5, 0), "right") if start - low > high - end else (end, (5, 0), "left")
+        text.remove()
+        where: Look = {"textcoords": "offset points", "ha": beside[2], "va": "center"}
+        axes.annotate(words, (beside[0], height), beside[1], **where)
 
 
 def stretched(position: NDArray) -> NDArray:

@@ -98,19 +98,24 @@ def motion(data: xr.Dataset) -> Figure:
     with the distance of the maximum height from that of the restitution model.
     """
     shown = frames(data)
-    right = WIDTH * POINTS
+    middle: Look = {"ha": "center", "va": "center"}
+    names = [name.replace(" (", "\n(") for name in shown.name.values]
+    count = shown.sizes["ball"]
     figure, axes = panels(TOP / POINTS)
+    widest = max(figure.text(0, 0, name).get_window_extent().width for name in names)
+    figure.texts.clear()
+    spacing = max(WIDTH * POINTS / count, widest * POINTS / figure.dpi + 10)
+    right = spacing * count
+    figure.set_figwidth(right / POINTS)
     figure.set_layout_engine("none")
     axes.set(position=(0, 0, 1, 1), xlim=(0, right), ylim=(0, TOP))
     axes.axis("off")
-    middle: Look = {"ha": "center", "va": "center"}
     axes.text(right / 2, TOP - 10, title(data, "n", "restitution", "amplitude"), **middle)
     surface = shown.table[0].item()
     axes.add_patch(Rectangle((4, surface - 8), right - 8, 8, color=TABLE, gid="table"))
     summits = shown.centre.max("time").values + RADIUS
     axes.axhline(summits[0], color=RIGID, linewidth=2.4)
     higher = 100 * (shown.summit / shown.summit[0] - 1).values
-    spacing = right / shown.sizes["ball"]
     for k, colour in enumerate(shown.colour.values):
         x = (k + 0.5) * spacing
         look: Look = {"facecolor": "none" if k else "0.85", "closed": k == 0, "edgecolor": EDGE}
@@ -121,7 +126,7 @@ def motion(data: xr.Dataset) -> Figure:
         axes.plot((x - 14, x + 14), (summits[k], summits[k]), color=colour, linewidth=1.6)
         bottom = (x, shown.centre[k, 0].item())
         axes.add_patch(Circle(bottom, facecolor=colour, gid=f"ball{k}", **ball))
-        axes.text(x, 12, shown.name.values[k].replace(" (", "\n("), **middle)
+        axes.text(x, 12, names[k], **middle)
         axes.text(x, summits[0] + 9, f"${higher[k]:+.1f}$ %" if k else "height", **middle)
     return figure
 

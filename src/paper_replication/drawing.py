@@ -9,16 +9,20 @@ The pictures are independent of the user's settings: `style` starts from matplot
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.path import Path as Outline
+from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from paper_replication.datasets import whole
@@ -33,6 +37,7 @@ SETTINGS: Look = {
     "font.size": 8,
     "axes.titlesize": "medium",
     "figure.labelsize": "medium",
+    "figure.titlesize": "medium",
     "axes.linewidth": 0.6,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -103,6 +108,15 @@ def pale(colour: str) -> str:
 
 # Panels
 
+POINTS = 72
+"""Points in an inch. Sizes of texts, sizes of marks and offsets are in points."""
+
+LEGEND_ROWS = 5
+"""Rows of a legend for which the height of a figure is meant."""
+
+LEGEND_ROW = 12.5
+"""Height of a row of a legend, in points."""
+
 
 def panels(
     height: float, rows: int = 1, columns: int = 1, width: float = WIDTH, **options: Any
@@ -120,7 +134,7 @@ def legend_below(
     """Add a legend below the panels.
 
     `entries` are the handles by label; the default is all labelled artists of the panels. A legend
-    that is wider than the figure gets fewer columns.
+    that is wider than the figure gets fewer columns, and one with many rows makes it higher.
     """
     if entries is None:
         entries = {}
@@ -133,6 +147,8 @@ def legend_below(
     if columns > 1 and legend.get_window_extent().width > figure.bbox.width:
         legend.remove()
         legend_below(figure, entries, columns - 1)
+    elif (more := len(shown) / columns - LEGEND_ROWS) > 0:
+        figure.set_figheight(figure.get_figheight() + np.ceil(more) * LEGEND_ROW / POINTS)
 
 
 def sample(**look: Any) -> Line2D:
@@ -141,9 +157,6 @@ def sample(**look: Any) -> Line2D:
 
 
 # Labels next to curves. They are added last, because their positions depend on the layout.
-
-POINTS = 72
-"""Points in an inch. Sizes of texts, sizes of marks and offsets are in points."""
 
 LINE_HEIGHT = 10.5
 """Vertical distance of labels that are next to each other, in points."""
@@ -171,6 +184,81 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     look: Look = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points"}
     for (text, height, colour), offset in zip(order, moved, strict=True):
         axes.annotate(text, (1.0, height), (4, offset), color=colour, va="center", **look)
+
+
+SIDES: Sequence[tuple[tuple[float, float], str, str]] = (
+    ((5, 1), "left", "bottom"),
+    ((-5, -1), "right", "top"),
+    ((7, 0), "left", "center"),
+    ((-7, 0), "right", "center"),
+    ((-5, 1), "right", "bottom"),
+    ((5, -1), "left", "top"),
+    ((0, 6), "center", "bottom"),
+    ((0, -6), "center", "top"),
+)
+"""Sides of a point for its label: an offset in points, and the alignment of the text."""
+
+
+def name_points(axes: Axes, names: Sequence[tuple[str, tuple[float, float], int]]) -> None:
+    """Add labels next to points of a panel, so that they meet no line, mark or other label.
+
+    `names` are the text, the point in data coordinates and the preferred side, an index of `SIDES`.
+    A label that is free at no side is left out. Draw the figure without rendering first, because
+    the panel needs its final size.
+    """
+    taken: list[Bbox] = []
+    paths: list[Outline] = []
+    point = axes.figure.dpi / POINTS
+    for line in axes.lines:
+        where = line.get_transform().transform(line.get_xydata())
+        if line.get_linestyle() != "None":
+            paths.append(Outline(where))
+        if line.get_marker() != "None" and line.get_markevery() is None:
+            half = line.get_markersize() / 2 * point
+            taken += [Bbox([at - half, at + half]) for at in where[np.isfinite(where).all(axis=1)]]
+    for text, at, preferred in names:
+        label = axes.annotate(text, at, (0, 0), textcoords="offset points")
+        for side in (SIDES[preferred], *SIDES):
+            label.set(position=side[0], horizontalalignment=side[1], verticalalignment=side[2])
+            box = ink(label)
+            if (
+                axes.bbox.contains(*box.min)
+                and axes.bbox.contains(*box.max)
+                and not any(box.overlaps(each) for each in taken)
+                and not any(path.intersects_bbox(box, filled=False) for path in paths)
+            ):
+                taken.append(box)
+                break
+        else:
+            label.remove()
+
+
+def ink(text: Text) -> Bbox:
+    """Return the box of a text in pixels with half a point beside its letters, and without the
+    space above and below them.
+    """
+    point = text.figure.dpi / POINTS
+    along, across = 0.5 * point, -1.5 * point
+    upright = text.get_rotation() in (90, 270)
+    return text.get_window_extent().padded(*((across, along) if upright else (along, across)))
+
+
+def thin(axis: Axis) -> None:
+    """Leave out every second number of a horizontal axis until none meets the next.
+
+    Draw the figure without rendering first, because the panel needs its final size.
+    """
+    low, high = np.sort(axis.get_view_interval())
+    slack = 1e-9 * (high - low)
+    while True:
+        ticks = axis.get_majorticklocs()
+        shown = (ticks >= low - slack) & (ticks <= high + slack)
+        boxes = [
+            ink(label) for label, inside in zip(axis.get_ticklabels(), shown, strict=True) if inside
+        ]
+        if all(one.x1 < other.x0 for one, other in pairwise(boxes)):
+            return
+        axis.set_ticks(ticks[shown][::2])
 
 
 # Files

@@ -22,6 +22,7 @@ sys.path.insert(0, str(TOP / "src"))
 from paper_replication.provenance import from_source
 
 with from_source(TOP / "src"):
+    from carbonelli2011.existence import without_orbit
     from paper_replication.configuration import (
         captions,
         checked,
@@ -57,6 +58,7 @@ configfile: TOP / "config/config.yaml"
 
 
 config.update(checked(config, TOP / "config/schema.yaml", workflow.configfiles))
+stop(without_orbit(config))
 
 
 # Figures, tables and datasets are registered in config.yaml, each in the section of its stage.

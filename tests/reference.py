@@ -39,7 +39,8 @@ def reference() -> dict[str, xr.Dataset]:
         pytest.skip(why, allow_module_level=True)
     datasets = {path.stem: read(path) for path in FIGURES.glob("*.nc")}
     if differences := unlike_the_paper(datasets):
-        why = f"not of the run of paper.py: {differences[0]}. Change one of them, run make accept"
+        lines = "; ".join(differences)
+        why = f"not of the parameters in paper.py: {lines}. Change one of them, run make accept"
         pytest.skip(why, allow_module_level=True)
     return datasets
 

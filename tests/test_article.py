@@ -16,7 +16,7 @@ from bouncing_ball import restitution, spring_damper
 from bouncing_ball.errors import errors_of_orbits, orbits_along
 from bouncing_ball.orbits import Family
 from carbonelli2011 import article, claims, measures, paper
-from carbonelli2011.paper import LIMIT, STIFF, printed_table
+from carbonelli2011.paper import LIMIT, STIFF
 from paper_replication import judgements, origins, templates, texts
 from paper_replication.datasets import parameters
 from paper_replication.verdicts import VERDICTS
@@ -80,6 +80,18 @@ def texts_of_other_numbers(seed: int) -> dict[str, str]:
             formula = getattr(module, name)
             patch.setattr(module, name, lambda *given, formula=formula: 0.7 * formula(*given))
         return {name: text_of(name, others) for name in TEXTS}
+
+
+def test_a_sentence_that_needs_what_the_results_lack_names_its_line(data):
+    """Here no other contact gives the printed 82, which the article lists."""
+    hypotheses = data["hypotheses"].copy(deep=True)
+    hypotheses.agrees[:] = False
+    with pytest.raises(ValueError, match="not enough values") as stopped:
+        text_of("paper", data | {"hypotheses": hypotheses})
+    (note,) = stopped.value.__notes__
+    number = int(re.fullmatch(r"paper\.md\.j2, line (\d+)", note).group(1))
+    lines = (article.TEMPLATES / "paper.md.j2").read_text("utf-8").splitlines()
+    assert "{{ others_with_82 | listed }}" in lines[number - 1]
 
 
 @pytest.mark.parametrize("name", TEXTS)

@@ -1,6 +1,16 @@
 """A mistake in the configuration ends a run before any job, with a line that names it."""
 
+from copy import deepcopy
+from itertools import product
+
 import pytest
+from tests.reference import CONFIG, stage
+
+from bouncing_ball import restitution
+from bouncing_ball.orbits import NoOrbit
+from carbonelli2011.existence import ALONG_CASES, COMPARED, stable_range, without_orbit
+from paper_replication.configuration import names
+from paper_replication.datasets import computed
 
 
 @pytest.mark.parametrize(
@@ -37,6 +47,15 @@ import pytest
             "error_thresholds.fig99.release: a setting of the whole run, not of an entry",
         ),
         ("restitution: 0.7", "restitution: unknown key, did you mean "),
+        (
+            "error_thresholds: {fig14: {amplitude: 3}}",
+            "error_thresholds.fig14.amplitude: 3 has no stable 1-T orbit, which needs Λ from "
+            "0.666398 to 1.2394 (Eqs. 7 and R1 for r = 0.65)",
+        ),
+        (
+            "time_histories: {fig12: {amplitude: 0.3}}",
+            "time_histories.fig12: 1-T orbits on stiff contacts need Λ >= 0.666398 (Eq. 7), and",
+        ),
         (
             "continuation: {fig08: {points: 61}}\ncontinuation: {fig09: {points: 61}}",
             "mine.yaml, line 2: continuation stands twice: write its keys together",
@@ -93,3 +112,55 @@ def test_a_configuration_that_cannot_be_read_is_one_line(fresh, content):
     status, _ = fresh.run("-n", "--cores", "1", "--", "fig01")
     assert status.startswith("configuration: config.yaml cannot be read: "), status
     assert "\n" not in status
+
+
+def moved(name, section, factor, end):
+    """The configuration with the ball of r = 0.65 in an entry, and all its amplitudes at a multiple
+    of an end of their range.
+    """
+    config = deepcopy(CONFIG)
+    entry = config[section][name]
+    for case in entry.get("cases", [entry]):
+        case["restitution"] = 0.65
+        amplitude = factor * stable_range(entry["n"], 0.65)[end]
+        key = "amplitude" if "amplitude" in case else "amplitude_max"
+        case[key] = [amplitude] if isinstance(case[key], list) else amplitude
+    return config
+
+
+@pytest.mark.parametrize(
+    "section, name",
+    [
+        (section, name)
+        for section in (COMPARED, *ALONG_CASES)
+        for name in names(CONFIG[section])
+        if {"amplitude", "amplitude_max", "cases"} & CONFIG[section][name].keys()
+    ],
+)
+def test_amplitudes_without_an_orbit_are_those_that_a_stage_refuses(section, name):
+    """The closed forms refuse nothing that a stage computes, and nothing else stops it there."""
+    for end in (0, 1):
+        inside, outside = (1 + 1e-9, 1 - 1e-9) if end == 0 else (1 - 1e-9, 1 + 1e-9)
+        assert [*without_orbit(moved(name, section, inside, end))] == []
+        config = moved(name, section, outside, end)
+        lines = [*without_orbit(config)]
+        assert [line.split(":")[0].split(".")[1] for line in lines] == (
+            [name] if end == 0 or section == COMPARED else []
+        )
+        if lines:
+            function = stage(section).STAGE[name]
+            settings = {key: config[key] for key in ("release", "largest_step")}
+            with pytest.raises(NoOrbit):
+                computed(function, config[section][name] | settings)
+
+
+def test_thresholds_of_bifurcations_need_no_orbit():
+    config = moved("thresholds", COMPARED, 0.9, 0)
+    config[COMPARED]["thresholds"]["quantities"] = ["saddle_node", "permanent_contact"]
+    assert [*without_orbit(config)] == []
+
+
+def test_the_closed_forms_are_those_of_the_restitution_model():
+    for n, r in product((1, 2, 5, 20), (1e-6, 0.05, 0.65, 1.0)):
+        found = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
+        assert stable_range(n, r) == pytest.approx(found, rel=1e-14)

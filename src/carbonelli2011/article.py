@@ -6,6 +6,7 @@ name the differences instead.
 """
 
 import json
+import traceback
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -45,22 +46,31 @@ def filled_in(
     """Fill in a template, in Markdown or HTML.
 
     It knows the datasets of all figures, tables and claims by their names, and what `more` has.
+    The line of the template is a note of an exception that an expression raises.
     """
     judged = counted(datasets["claims"])
     own = claims_of(datasets["claims"], "own claim")
     template = environment(TEMPLATES, marked).get_template(f"{name}.{kind}.j2")
-    return template.render(
-        **datasets,
-        titles={key: data.attrs["title"] for key, data in datasets.items()},
-        given={key: parameters(data) for key, data in datasets.items()},
-        code={key: next(iter(json.loads(data.attrs["code"]))) for key, data in datasets.items()},
-        judged=judged,
-        claim={row["claim"]: row for row in [*judged, *own]},
-        error_limit=paper.LIMIT,
-        stiff=paper.STIFF,
-        verdicts=environment(TEMPLATES).get_template("verdicts.md.j2").render().rstrip(),
-        **more,
-    )
+    try:
+        return template.render(
+            **datasets,
+            titles={key: data.attrs["title"] for key, data in datasets.items()},
+            given={key: parameters(data) for key, data in datasets.items()},
+            code={
+                key: next(iter(json.loads(data.attrs["code"]))) for key, data in datasets.items()
+            },
+            judged=judged,
+            claim={row["claim"]: row for row in [*judged, *own]},
+            error_limit=paper.LIMIT,
+            stiff=paper.STIFF,
+            verdicts=environment(TEMPLATES).get_template("verdicts.md.j2").render().rstrip(),
+            **more,
+        )
+    except Exception as error:
+        for frame in traceback.extract_tb(error.__traceback__):
+            if frame.filename.endswith(".j2"):
+                error.add_note(f"{Path(frame.filename).name}, line {frame.lineno}")
+        raise
 
 
 def text(name: str, datasets: Datasets) -> str:

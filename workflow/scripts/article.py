@@ -14,6 +14,11 @@ with reading(snakemake.input) as sources:
 
     results = Path(snakemake.output.index).parent
     datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
-    for name, text in pages(datasets, snakemake.params.entries).items():
+    try:
+        texts = pages(datasets, snakemake.params.entries)
+    except (ValueError, LookupError) as error:
+        why = "the sentence is for other results: correct it, or PARAMETERS of paper.py"
+        sys.exit(f"{': '.join(getattr(error, '__notes__', []))}: {error}: {why}")
+    for name, text in texts.items():
         (results / name).write_text(text, encoding="utf-8", newline="\n")
     save_record(snakemake, sources, PROJECT)

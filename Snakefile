@@ -3,6 +3,7 @@
 #     snakemake --cores 2                  everything: results/index.html
 #     snakemake --cores 2 fig14 table1     a figure and a table
 #     snakemake --cores 2 continuation     the datasets of a stage
+#     snakemake --cores 2 results/pdf/fig14.pdf    a figure as PDF: docs/chapter.md
 #     snakemake --cores 2 diff             compare the results with the reference
 #     snakemake --cores 2 fig14 diff       make and compare Figure 14 only
 #
@@ -310,6 +311,24 @@ for name in FIGURES:
             "workflow/envs/environment.yaml"
         script:
             "workflow/scripts/draw.py"
+
+
+rule pdf:
+    """A figure as PDF, results/pdf/fig14.pdf, with the settings of the file `style`, if it is given"""
+    input:
+        data=lambda wildcards: shown_by(wildcards.name),
+        style=config.get("style", []),
+        code=checkout("workflow/scripts/pdf.py") + DRAWING,
+    output:
+        pdf="results/pdf/{name}.pdf",
+    wildcard_constraints:
+        name="|".join(FIGURES),
+    log:
+        "results/logs/pdf/{name}.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/pdf.py"
 
 
 for name in TABLES:

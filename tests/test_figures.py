@@ -383,14 +383,16 @@ def test_two_figures_have_the_same_axes():
 
 
 def test_two_figures_have_their_panels_in_the_same_place():
-    """A legend of three more lines moves no panel."""
+    """A legend of six more rows moves no panel, and makes no picture higher than the other."""
     with drawing.style():
         pair = [drawing.panels(3.0, rows=2) for _ in range(2)]
-    for (figure, axes), count in zip(pair, (1, 7), strict=True):
+    for (figure, axes), count in zip(pair, (1, 13), strict=True):
         for n in range(count):
             axes[0].plot([0, 1], [0, n], label=f"a label {n}")
         drawing.legend_below(figure)
     drawing.on_the_same_axes([figure for figure, _ in pair])
+    (one, _), (other, _) = pair
+    assert one.get_size_inches().tolist() == other.get_size_inches().tolist()
     for axes, same in zip(pair[0][1], pair[1][1], strict=True):
         assert axes.get_position().bounds == same.get_position().bounds
 
@@ -429,6 +431,32 @@ def test_settings_of_the_user_change_no_byte(tmp_path, name):
     usual = saved(tmp_path, name)
     with matplotlib.rc_context(SETTINGS):
         assert saved(tmp_path, name) == usual
+
+
+def test_a_pdf_has_its_letters_as_text_in_the_font_and_the_size_that_are_given(tmp_path):
+    own = {"font.family": "STIXGeneral", "mathtext.fontset": "stix", "figure.figsize": "6.4, 4.8"}
+    for settings, font, size in (({}, b"DejaVuSans", b"252 302.4"), (own, b"STIX", b"460.8 345.6")):
+        figure = figures.draw("fig14", *data_of("fig14"), own=settings)
+        drawing.save_pdf(figure, tmp_path / "fig14.pdf", settings)
+        content = (tmp_path / "fig14.pdf").read_bytes()
+        assert b"/MediaBox [ 0 0 %s ]" % size in content
+        names = re.findall(rb"/BaseFont /\w+\+([\w-]+)", content)
+        assert names and all(name.startswith(font) for name in names)
+        # Embedded TrueType, no outlines.
+        assert b"/FontFile2" in content and b"/Type3" not in content
+
+
+@pytest.mark.parametrize(
+    ("own", "words"),
+    [
+        ({"font.sise": 9}, "font.sise"),
+        ({"font.size": "big"}, "big"),
+        ({"font.family": "Palatina"}, "Palatina"),
+    ],
+)
+def test_a_setting_that_would_have_no_effect_is_refused(own, words):
+    with pytest.raises((KeyError, ValueError), match=words):
+        figures.draw("fig01", own=own)
 
 
 def test_a_picture_appears_whole_or_not_at_all(tmp_path):

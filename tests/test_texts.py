@@ -230,3 +230,13 @@ def test_examples_of_the_pages_run(page, monkeypatch):
     monkeypatch.chdir((ROOT / page).parent)
     found = doctest.testfile(str(ROOT / page), module_relative=False, encoding="utf-8")
     assert found.failed == 0
+
+
+@pytest.mark.parametrize("page", ["docs/chapter.md"])
+def test_scripts_of_a_page_run_as_written_and_make_what_it_names(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "figures").symlink_to(ROOT / "figures")
+    for script in re.findall(r"^```python\n(.*?)^```", text(page), re.MULTILINE | re.DOTALL):
+        exec(script, {})
+        named = re.findall(r'"(\w+\.(?:pdf|png|csv|tex))"', script)
+        assert named and all((tmp_path / file).stat().st_size > 200 for file in named)

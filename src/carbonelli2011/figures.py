@@ -8,6 +8,7 @@ module `drawing` explains line styles, widths and marks.
 from collections.abc import Callable, Mapping
 from itertools import cycle
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -897,17 +898,17 @@ PLOTS: Mapping[str, Callable[[xr.Dataset], Figure]] = {
 FIGURES: Mapping[str, Callable[..., Figure]] = {**SCHEMATICS, **PLOTS}
 
 
-def draw(name: str, *data: xr.Dataset) -> Figure:
+def draw(name: str, *data: xr.Dataset, own: Mapping[str, Any] | None = None) -> Figure:
     """Draw a figure of the paper, fig01 to fig16, or the validity map from its dataset.
 
-    fig01 and fig04 need no dataset. The style is independent of the user's settings. Raises
-    Empty if the dataset has no orbit.
+    fig01 and fig04 need no dataset. Of matplotlib's settings only those of `own` count, as in
+    `drawing.style`, which says what it raises. Raises Empty if the dataset has no orbit.
     """
     for each in data:
         orbits = each.get("phase", each.get("ball"))
         if orbits is not None and orbits.isnull().all():
             raise Empty(f"{name} would be empty: {without_orbit(each)}")
-    with style():
+    with style(own):
         return FIGURES[name](*data)
 
 

@@ -106,7 +106,7 @@ def motion(data: xr.Dataset) -> Figure:
     figure.texts.clear()
     spacing = max(WIDTH * POINTS / count, widest * POINTS / figure.dpi + 10)
     right = spacing * count
-    figure.set_figwidth(right / POINTS)
+    figure.set_size_inches(right / POINTS, TOP / POINTS)
     figure.set_layout_engine("none")
     axes.set(position=(0, 0, 1, 1), xlim=(0, right), ylim=(0, TOP))
     axes.axis("off")

@@ -3,7 +3,8 @@
 All figures have the width `WIDTH` and texts of 8 points. Colours differ in lightness, and curves
 also differ in dashes, width or marks. Readers need neither colour vision nor a colour printer.
 
-The pictures are independent of the user's settings: `style` starts from matplotlib's defaults.
+The pictures are independent of the user's settings: `style` starts from matplotlib's defaults, and
+only settings that it is given change them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,6 +21,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.lines import Line2D
 from matplotlib.path import Path as Outline
 from matplotlib.text import Text
@@ -55,6 +57,8 @@ SETTINGS: Look = {
     # Letters are paths, because the layout is computed for one font, which the reader of an SVG may
     # not have.
     "svg.fonttype": "path",
+    # Letters of fonts that are embedded: they can be searched, and journals accept them.
+    "pdf.fonttype": 42,
 }
 
 # Neighbours also differ in grey. Each colour has a contrast of at least 3:1 with white.
@@ -70,9 +74,20 @@ DASHES = (
 GUIDE: Look = {"color": "#777777", "linewidth": 0.8, "linestyle": (0, (1, 1.6)), "zorder": 1}
 
 
-def style() -> AbstractContextManager:
-    """Context for drawing and saving figures: matplotlib's defaults, updated by `SETTINGS`."""
-    settings: Any = matplotlib.rcParamsDefault | SETTINGS
+def style(own: Mapping[str, Any] | None = None) -> AbstractContextManager:
+    """Context for drawing and saving figures: matplotlib's defaults, updated by `SETTINGS` and by
+    settings of one's own.
+
+    Raises KeyError for a setting that matplotlib does not have, and ValueError for a value that it
+    does not accept, or for a font that is not installed.
+    """
+    settings: Any = matplotlib.rcParamsDefault | SETTINGS | matplotlib.RcParams(own or {})
+    if own:
+        if "figure.figsize" in own:
+            # `panels` compares it with the default, which may be one's own.
+            settings["figure.figsize"] = [np.nextafter(x, 9) for x in settings["figure.figsize"]]
+        with matplotlib.rc_context(settings):
+            findfont(FontProperties(), fallback_to_default=False)
     return matplotlib.rc_context(settings)
 
 
@@ -114,15 +129,20 @@ POINTS = 72
 LEGEND_ROWS = 5
 """Rows of a legend for which the height of a figure is meant."""
 
-LEGEND_ROW = 12.5
-"""Height of a row of a legend, in points."""
+LEGEND_ROW = 1.56
+"""Height of a row of a legend, in units of the font size."""
 
 
 def panels(
     height: float, rows: int = 1, columns: int = 1, width: float = WIDTH, **options: Any
 ) -> tuple[Figure, Any]:
-    """Create a figure of a height and a width in inches, and its panel or panels."""
-    figure = Figure(figsize=(width, height))
+    """Create a figure of a height and a width in inches, and its panel or panels.
+
+    A size of one's own, `figure.figsize` of `style`, comes first.
+    """
+    own = matplotlib.rcParams["figure.figsize"]
+    is_own = own != matplotlib.rcParamsDefault["figure.figsize"]
+    figure = Figure(figsize=own if is_own else (width, height))
     # This canvas keeps its renderer. Otherwise each measurement of a text would create one.
     FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, **options)
@@ -148,7 +168,8 @@ def legend_below(
         legend.remove()
         legend_below(figure, entries, columns - 1)
     elif (more := len(shown) / columns - LEGEND_ROWS) > 0:
-        figure.set_figheight(figure.get_figheight() + np.ceil(more) * LEGEND_ROW / POINTS)
+        row = LEGEND_ROW * matplotlib.rcParams["font.size"] / POINTS
+        figure.set_figheight(figure.get_figheight() + np.ceil(more) * row)
 
 
 def sample(**look: Any) -> Line2D:
@@ -158,8 +179,8 @@ def sample(**look: Any) -> Line2D:
 
 # Labels next to curves. They are added last, because their positions depend on the layout.
 
-LINE_HEIGHT = 10.5
-"""Vertical distance of labels that are next to each other, in points."""
+LINE_HEIGHT = 1.3125
+"""Vertical distance of labels that are next to each other, in units of the font size."""
 
 
 def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
@@ -177,7 +198,7 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     points = POINTS / axes.figure.dpi
     wanted = axes.transData.transform(ends)[:, 1] * points
     bottom, top = axes.get_window_extent().intervaly * points
-    steps = LINE_HEIGHT * np.arange(len(order))
+    steps = LINE_HEIGHT * matplotlib.rcParams["font.size"] * np.arange(len(order))
     ascending = isotonic_regression(wanted - steps).x
     lowest = np.clip(ascending, bottom, max(bottom, top - steps[-1]))
     moved = lowest + steps - wanted
@@ -268,6 +289,9 @@ def on_the_same_axes(figures: Sequence[Figure]) -> list[bytes]:
     """Return figures of the same kind as PNG, each panel with limits that hold those of all, and in
     the place that it can have in all: a longer legend moves panels.
     """
+    size = np.max([figure.get_size_inches() for figure in figures], axis=0)
+    for figure in figures:
+        figure.set_size_inches(size)
     for panels_of_all in zip(*(figure.axes for figure in figures), strict=True):
         x = [axes.get_xlim() for axes in panels_of_all]
         y = [axes.get_ylim() for axes in panels_of_all]
@@ -287,6 +311,12 @@ def on_the_same_axes(figures: Sequence[Figure]) -> list[bytes]:
             figure.savefig(picture, format="png")
             pictures.append(picture.getvalue())
     return pictures
+
+
+def save_pdf(figure: Figure, path: str | Path, own: Mapping[str, Any] | None = None) -> None:
+    """Save a figure as PDF, with the settings with which it was drawn (`style`)."""
+    with style(own), whole(Path(path)) as unfinished:
+        figure.savefig(unfinished, format="pdf", metadata={"CreationDate": None})
 
 
 def save_picture(

@@ -1190,3 +1190,21 @@ def test_a_law_of_an_impact_has_its_full_damping_at_a_tenth_of_the_depth(law, sc
     """The depth that the page on laws names, for one who copies it into a multibody program."""
     found = law(restitution=0.7, duration=0.2, speed=3.5).parameters
     assert found["depth"] == pytest.approx(0.1 * scale(found["stiffness"], 3.5), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("ball", "tau", "u", "T", "amplitude"),
+    [
+        (kuwabara_kono(stiffness=3000.0, damping=0.3), -3.1026, 0.4024, 28.0, 1.1496),
+        (hunt_crossley_linear(30.0, 0.5), 2.0, 0.5, 4.0, 0.9),
+        (limited_damper(8.0, 0.4), 2.0, 0.5, 3.0, 0.9),
+    ],
+)
+def test_slopes_in_long_contacts_are_those_of_contacts_of_each_length(ball, tau, u, T, amplitude):
+    """The first column is a contact of one panel, the second one of many."""
+    tau, u, T = np.array([1.0, tau]), np.array([3.0, u]), np.array([0.1, T])
+    places = np.linspace(0.0, 1.0, 9)
+    slopes = ball.release_slopes(tau, u, T, places, amplitude)
+    lengths = np.multiply.outer(places, T) + 1j * H
+    exact = ball.contact(tau, u, lengths, amplitude).release.imag.T / H
+    np.testing.assert_allclose(slopes, exact, rtol=0, atol=1e-7 * np.abs(exact).max())

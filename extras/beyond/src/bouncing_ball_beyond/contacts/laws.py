@@ -40,6 +40,7 @@ from bouncing_ball_beyond.contacts.root_time import (
     linearize,
     load_of,
     rates,
+    sampled,
     values_by_row,
     whole_panel,
 )
@@ -428,20 +429,24 @@ class ForceLaw(Force):
         amplitude: Values,
         table: Table = SINE,
     ) -> NDArray | None:
-        """Compute :meth:`.Ball.release_slopes`; None if a contact is not solved by one panel.
+        """Compute :meth:`.Ball.release_slopes`.
 
         The slopes come from the polynomials through the nodes of the panels.
         """
         given = {"tau": tau, "u": u, "amplitude": amplitude, "gravity": 1.0, "T": T}
         rows, motion, start, _ = self._started(given, table)
+        until = rows.given["T"]
         guess = self._guessed(rows)
-        if guess is None:
-            return None
-        motion = motion._replace(gauss=guess.gauss)
-        panel, good = whole_panel(motion, start, rows.given["T"], guess)
-        if not good.all():
-            return None
-        states = panel.states(places, guess.gauss)
+        states = np.empty((3, places.size, rows.size))
+        left = np.arange(rows.size)
+        if guess:
+            whole = motion._replace(gauss=guess.gauss)
+            panel, good = whole_panel(whole, start, until, guess)
+            states = panel.states(places, guess.gauss)
+            left = np.flatnonzero(~good)
+        if left.size:
+            some = motion.of(left), start[:, left], until[left]
+            states[..., left] = sampled(*some, places)
         slopes = event_rate(motion, motion.release, states)[1]
         return slopes.T.reshape(*rows.shape, places.size)
 

@@ -367,11 +367,17 @@ class Panel(NamedTuple):
         nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
         return Panel(nodes, end, *(x[..., rows] for x in self[2:]))
 
-    def states(self, places: NDArray, gauss: Gauss) -> list[NDArray]:
-        """Interpolate q, v and t at positions on [0, 1], each of the shape (positions, rows)."""
+    def states(self, places: NDArray, gauss: Gauss) -> NDArray:
+        """Interpolate q, v and t at positions on [0, 1], shape (3, positions, rows).
+
+        ``places`` has the shape (positions,), or (positions, rows).
+        """
+        if places.ndim > 1:
+            coefficients = (gauss.coefficients @ y for y in self.nodes)
+            return np.array([legendre.legval(2 * places - 1, c, False) for c in coefficients])
         order = gauss.nodes.size
         values = legendre.legvander(2 * places - 1, order - 1) @ gauss.coefficients
-        return [values @ y for y in self.nodes]
+        return np.array([values @ y for y in self.nodes])
 
     def pushed(self, share: NDArray, gauss: Gauss) -> NDArray:
         """Interpolate F to the Gauss nodes of the first part of each panel, [0, ``share``]."""
@@ -777,6 +783,7 @@ class _Contacts:
     ended: NDArray
     lost: NDArray
     first: NDArray
+    accept: Callable | None
 
     def advance(self, here: NDArray, lies: bool) -> None:
         """Move contacts to the ends of their next panels. Panels that fail are made shorter."""
@@ -811,6 +818,8 @@ class _Contacts:
         kept = here[good]
         self.size[kept] = np.fmax(self.size[kept], greatest[good])
         self.least[kept] = np.fmin(self.least[kept], panel.nodes[0].min(0)[good])
+        if self.accept:
+            self.accept(kept, s[good], panel.of(good))
         if motion.root > 1:
             # Time runs backwards from the first zero of q to the second. There the contact starts
             # again, so an integration to a later root time is of no use.
@@ -894,6 +903,25 @@ def whole_panel(
     return panel, good & (fastest <= 2 * np.abs(start[1]))
 
 
+def sampled(motion: ContactMotion, start: NDArray, until: NDArray, places: NDArray) -> NDArray:
+    """Interpolate q, v and t at fractions of the root times ``until``, shape (3, places, rows).
+
+    They are NaN beyond the end of a contact that does not last that long.
+    """
+    found = np.full((3, places.size, until.size), np.nan)
+
+    def accept(rows: NDArray, starts: NDArray, panel: Panel) -> None:
+        here = (np.multiply.outer(places, until[rows]) - starts) / panel.length
+        inside = (here > -SAME) & (here < 1 + SAME)
+        some = found[..., rows]
+        found[..., rows] = np.where(inside, panel.states(here, motion.gauss), some)
+
+    by = np.zeros((2, 0, until.size))
+    given = until / (1.5 * motion.root), np.full(until.size, 2 * np.pi)
+    integrate_contacts(motion, start, by, *given, until=until, accept=accept)
+    return found
+
+
 @np.errstate(all="ignore")
 def integrate_to(
     motion: ContactMotion,
@@ -939,6 +967,7 @@ def integrate_contacts(
     longest: Values = PERIODS,
     until: NDArray | None = None,
     after: NDArray | None = None,
+    accept: Callable | None = None,
 ) -> tuple[NDArray, NDArray]:
     """Integrate contacts up to the first releases, to given root times, or to given times.
 
@@ -962,6 +991,9 @@ def integrate_contacts(
         Root times at which the integration stops.
     after : array, shape (rows,), optional
         Times after the start at which the integration stops.
+    accept : callable, optional
+        Function that receives the accepted panels: their rows, their starts in root time, and the
+        panels.
 
     Returns
     -------
@@ -1004,6 +1036,7 @@ def integrate_contacts(
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
         first=v,
+        accept=accept,
     )
     for attempt in range(MOST_PANELS):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))

@@ -686,8 +686,13 @@ def turns_back(
     turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)
     if not turns.any():
         return np.full(ends.shape, FAR)
-    lowest = np.where(turns, value(times)[..., 1:], np.inf).argmin(axis=-1)
-    which = lowest[..., np.newaxis]
+    # The turns of each interval come first. Only those of an interval with several are compared.
+    which = np.argsort(~turns, axis=-1, kind="stable")[..., : turns.sum(axis=-1).max()]
+    if which.shape[-1] > 1:
+        heights = value(np.take_along_axis(times, which + 1, axis=-1))
+        heights = np.where(np.take_along_axis(turns, which, axis=-1), heights, np.inf)
+        lowest = heights.argmin(axis=-1)[..., np.newaxis]
+        which = np.take_along_axis(which, lowest, axis=-1)
     low = np.take_along_axis(times, which, axis=-1)
     high = np.take_along_axis(times, which + 1, axis=-1)
     middle = (low + high) / 2

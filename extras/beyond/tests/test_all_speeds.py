@@ -105,3 +105,12 @@ def test_a_jump_of_the_restitution_is_refused(place):
     with pytest.raises(ValueError, match=f"jumps by 0.3 near u = {place}, .* smooth step"):
         bb.Rigid(lambda u: np.where(u.real < place, 0.8, 0.5))
     assert bb.Rigid(lambda u: 0.65 - 0.15 * np.tanh((u - place) / 1e-6))
+
+
+def test_an_r_that_is_not_finite_is_refused_where_orbits_close():
+    """Beyond u = 12.9 the exponential overflows, and the derivative is not a number."""
+    ball = bb.Rigid(lambda u: 1 / (1 + np.exp(80 * (u - 4))))
+    assert bb.orbits(ball, amplitude=7.0, periods=2)
+    for ask in (bb.limits, lambda ball, n: bb.orbits(ball, periods=n, amplitude=10.0)):
+        with pytest.raises(ValueError, match=r"not finite near u = 1\d\.\d+; 3-T orbits close at"):
+            ask(ball, n=3)

@@ -28,11 +28,19 @@ def closing_speeds(ball: Ball, n: int) -> NDArray:
     nπ divided by `SEGMENTS`, or by `OF_CONTACTS` if the r(u) is that of a contact.
     """
     half = n * np.pi
+    of_contacts = ball.has_duration or ball.below_table
 
     def excess(u: NDArray) -> Any:
-        return (1 + ball.signature(u.ravel()).restitution.reshape(u.shape)) * u - 2 * half
+        r = ball.signature(u.ravel()).restitution
+        # The free impacts of a contact may not end, but an r(u) must be known.
+        if not (of_contacts or np.isfinite(r).all()):
+            place = u.ravel()[~np.isfinite(r)][0].real
+            raise ValueError(
+                f"restitution: r(u), or its derivative, is not finite near u = {place:.4g}; {n}-T"
+                f" orbits close at u from {half:.4g} to {2 * half:.4g}"
+            )
+        return (1 + r.reshape(u.shape)) * u - 2 * half
 
-    of_contacts = ball.has_duration or ball.below_table
     return roots(excess, half, 2 * half, half, OF_CONTACTS if of_contacts else SEGMENTS)
 
 

@@ -65,6 +65,11 @@ def multipliers(case, one):
     return np.linalg.eigvals(np.transpose(columns) / (2 * STEP)).real
 
 
+def test_a_stable_range_passes_a_switch():
+    node, doubling = found = limits(law_of(300.0, 2.0, 1.0))
+    assert found.stable_ranges == ((node.amplitude, doubling.amplitude),)
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_limits_are_those_of_the_clipped_force(case):
     node, doubling = limits(law_of(*case))

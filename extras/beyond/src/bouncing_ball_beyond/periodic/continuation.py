@@ -450,6 +450,9 @@ def _followed(equations: OrbitEquations, z: NDArray) -> list[tuple[float, float]
 
     The special orbits, in the first and the last row, count as their neighbours.
     """
+    # Rounding decides on orbits at a switch of a release: they count as their neighbours.
+    inside = [not equations.at_switch(row[np.newaxis]) for row in z[1:-1]]
+    z = z[[True, *inside, True]] if any(inside) else z
     inner = equations.admissible(z[1:-1])
     followed = np.concatenate([inner[:1], inner, inner[-1:]])
     ends = [z[0, -1]]

@@ -107,6 +107,7 @@ def test_a_jump_of_the_restitution_is_refused(place):
     assert bb.Rigid(lambda u: 0.65 - 0.15 * np.tanh((u - place) / 1e-6))
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def test_an_r_that_is_not_finite_is_refused_where_orbits_close():
     """Beyond u = 12.9 the exponential overflows, and the derivative is not a number."""
     ball = bb.Rigid(lambda u: 1 / (1 + np.exp(80 * (u - 4))))

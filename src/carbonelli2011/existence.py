@@ -12,8 +12,8 @@ from paper_replication.configuration import names
 COMPARED = "error_thresholds"
 """The stage that compares stable orbits of both models."""
 ALONG_CASES = ("apparent_restitution", "continuation", "time_histories")
-"""Stages whose entries need an orbit of stiff contacts in one of their cases. A branch begins at the
-largest amplitude.
+"""Stages whose entries need an orbit of stiff contacts in one case. A branch begins at its largest
+amplitude.
 """
 WITHOUT_ORBITS = {"saddle_node", "period_doubling", "permanent_contact"}
 """Quantities that need no orbit at the amplitude."""

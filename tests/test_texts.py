@@ -232,9 +232,10 @@ def test_examples_of_the_pages_run(page, monkeypatch):
     assert found.failed == 0
 
 
-@pytest.mark.parametrize("page", ["docs/chapter.md"])
+@pytest.mark.parametrize("page", ["docs/chapter.md", "docs/recipes.md"])
 def test_scripts_of_a_page_run_as_written_and_make_what_it_names(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
     (tmp_path / "figures").symlink_to(ROOT / "figures")
     for script in re.findall(r"^```python\n(.*?)^```", text(page), re.MULTILINE | re.DOTALL):
         exec(script, {})

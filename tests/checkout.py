@@ -1,5 +1,5 @@
 """Copies of a workflow, of the replication or of extras/beyond, whose scripts only write their
-outputs: a whole run takes seconds.
+outputs, so that a whole run takes seconds; and git without the settings of its user.
 """
 
 import contextlib
@@ -7,6 +7,7 @@ import io
 import os
 import re
 import shutil
+import subprocess
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -75,3 +76,19 @@ def stubbed(top: Path, folder: Path) -> Checkout:
     for script in (folder / "workflow/scripts").glob("*.py"):
         script.write_text(STUB + script.read_text("utf-8"), "utf-8")
     return Checkout(folder)
+
+
+@contextlib.contextmanager
+def without_variables_of_git():
+    """Git without the variables of a hook, and without the configuration of a user or a machine.
+
+    A hook exports the index and the repository of its commit. Tests that used them would commit
+    their own project into the user's repository.
+    """
+    names = subprocess.check_output(["git", "rev-parse", "--local-env-vars"], text=True).split()
+    with pytest.MonkeyPatch.context() as patch:
+        for name in [*names, "GIT_DEFAULT_HASH", "GIT_TEMPLATE_DIR"]:
+            patch.delenv(name, raising=False)
+        patch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
+        patch.setenv("GIT_CONFIG_NOSYSTEM", "1")
+        yield

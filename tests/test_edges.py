@@ -344,7 +344,8 @@ def assert_texts_are_true(changed: dict) -> None:
 @pytest.mark.parametrize(("section", "name", "changes"), [*edges(), *CASES], ids=str)
 def test_a_configuration_at_an_edge_gives_true_results_or_one_line(section, name, changes):
     config = changed(section, name, changes)
-    lines = list(mistakes(config, SCHEMA))
+    alone = {section: {"title": "", name: config[section][name]}}
+    lines = list(mistakes(alone, SCHEMA | {"required": []}))
     if lines:
         assert all(line.startswith(f"{section}.{name}.") for line in lines)
         return

@@ -18,6 +18,9 @@ from tests.reference import CONFIG, stage
 
 from paper_replication.configuration import entries, stages
 
+# One worker, because a whole run is shared.
+pytestmark = pytest.mark.xdist_group("workflow")
+
 COMPUTED = stages(CONFIG).keys() - {"schematics"}
 ENTRIES = entries(CONFIG)
 FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}

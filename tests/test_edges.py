@@ -7,7 +7,6 @@ if it still is that of the paper.
 """
 
 import copy
-import inspect
 import json
 import re
 from collections.abc import Iterator
@@ -26,7 +25,7 @@ from carbonelli2011.claims import CLAIMS, CONTACT_OF_FIG11, judge, table1_ends
 from carbonelli2011.figures import Empty
 from paper_replication import templates, texts
 from paper_replication.configuration import mistakes
-from paper_replication.datasets import computed, other_parameters
+from paper_replication.datasets import computed, other_parameters, settings_of
 from paper_replication.verdicts import VERDICTS, answer
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema.yaml").read_text("utf-8"))
@@ -224,8 +223,7 @@ def changed(section: str, name: str, changes: dict) -> dict:
 def made(section: str, name: str, config: dict):
     """The dataset of an entry, as the job of its stage saves it."""
     function = stage(section).STAGE[name]
-    known = inspect.signature(function).parameters
-    given = {key: config[key] for key in ("release", "largest_step") if key in known}
+    given = {key: config[key] for key in settings_of(function)}
     about = ("title", "caption", "table")
     given |= {key: each for key, each in config[section][name].items() if key not in about}
     data = computed(function, given)
@@ -380,7 +378,7 @@ def test_the_branches_of_r_of_1_are_flat_and_bifurcations_beyond_the_axis_are_no
 
 def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_number():
     for section, name in computed_entries():
-        known = inspect.signature(stage(section).STAGE[name]).parameters
+        known = settings_of(stage(section).STAGE[name])
         if "release" in known and "restitution" in CONFIGURATION[section].get(name, {}):
             config = changed(section, name, {"restitution": 0.1}) | {"release": "force"}
             if name in ("table1", "lowest_doubling"):
@@ -395,7 +393,7 @@ def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_
 def test_another_release_gives_true_pages():
     found = {}
     for section, name in computed_entries():
-        known = inspect.signature(stage(section).STAGE[name]).parameters
+        known = settings_of(stage(section).STAGE[name])
         if name in reference() and "release" in known:
             config = changed(section, name, single(CONFIGURATION[section][name]))
             found[name] = made(section, name, config | {"release": "force"})

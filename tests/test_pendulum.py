@@ -40,6 +40,13 @@ def test_a_dataset_a_claim_and_a_sentence(accepted):
     assert "\nAt 60° a swing takes 2.15 s." in (accepted.path / "paper.md").read_text("utf-8")
 
 
+def test_a_misnamed_section_is_refused_by_its_name(accepted, tmp_path):
+    there = Checkout(shutil.copytree(accepted.path, tmp_path / "pendulum"))
+    there.edit("config/config.yaml", "periods:", "period:")
+    status, _ = there.run("--cores", "1")
+    assert status == "configuration: period: unknown key, did you mean periods?"
+
+
 def test_the_page_of_its_text_has_no_links_to_pages_that_it_lacks(accepted):
     page = (accepted.path / "results/paper.html").read_text("utf-8")
     assert re.findall('href="(.*?)"', page) == ["paper.html"]

@@ -8,7 +8,6 @@ import os
 import subprocess
 import sys
 import tomllib
-from inspect import signature
 from modulefinder import ModuleFinder
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from tests.checkout import ROOT, Checkout
 from tests.reference import CONFIG, stage
 
 from paper_replication.configuration import entries, stages
+from paper_replication.datasets import settings_of
 
 # One worker, because a whole run is shared.
 pytestmark = pytest.mark.xdist_group("workflow")
@@ -47,8 +47,7 @@ def test_a_whole_run_makes_every_file_of_the_reference(complete):
 
 def test_each_stage_runs_its_script_with_the_settings_that_its_functions_take(complete):
     for name in COMPUTED:
-        functions = stage(name).STAGE.values()
-        needed = {each for one in functions for each in [*signature(one).parameters][1:]}
+        needed = set().union(*map(settings_of, stage(name).STAGE.values()))
         record = complete.path / f"results/records/{name}.json"
         assert record.read_text("utf-8") == f"{name} {sorted(needed)}"
 

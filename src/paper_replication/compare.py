@@ -208,31 +208,42 @@ class Checkout:
     made: Collection[str] = ()
 
     def outdated(self, file: str, data: Any, record: Mapping) -> list[str]:
-        """What changed since a file was made: parameters of a dataset or a text, attributes and
-        code.
+        """What changed since a file was made: parameters, attributes of a dataset, and code."""
+        name = Path(file).stem if isinstance(data, xr.Dataset) else ""
+        return [
+            *self.other_parameters(name, record["parameters"]),
+            *(self.other_attributes(name, data) if name else ()),
+            *self.other_code(record["code"]),
+        ]
+
+    def other_parameters(self, name: str, recorded: Mapping) -> list[str]:
+        """Parameters that the configuration has otherwise: those of the entry of a dataset and the
+        settings that it takes, or, without a name, the entries that a text was made from.
         """
-        name = Path(file).stem
-        code = contents_in(self.project.checkout, record["code"])
-        lines = [path for path, made in record["code"].items() if code.get(path) != made]
-        known = entries(self.config or {})
-        if isinstance(data, xr.Dataset):
-            described = self.project.describe(name)
-            variables = {str(key): each for key, each in data.variables.items()}
-            variables = {key: each for key, each in variables.items() if key in described}
-            now: dict[str, Any] = {**common_attributes(self.project)}
-            then = {key: each for key, each in data.attrs.items() if key in now}
-            now |= {key: attributes(described[key], variables[key].dtype) for key in variables}
-            then |= {key: variables[key].attrs for key in variables}
-            lines = changes(plain(then), plain(now)) + lines
-            entry = {key: each for key, each in known.get(name, {}).items() if key not in SHOWN_BY}
-            settings = record["parameters"].keys() & (self.config or {}).keys()
-            known = {key: (self.config or {})[key] for key in settings} | entry
-        if self.config and record["parameters"]:
-            lines = [
-                f"{line} (config/config.yaml or the Snakefile)"
-                for line in changes(record["parameters"], plain(known))
-            ] + lines
-        return lines
+        if not self.config or not recorded:
+            return []
+        now = entries(self.config)
+        if name:
+            settings = {key: self.config[key] for key in recorded.keys() & self.config.keys()}
+            entry = now.get(name, {})
+            now = settings | {key: each for key, each in entry.items() if key not in SHOWN_BY}
+        lines = changes(recorded, plain(now))
+        return [f"{line} (config/config.yaml or the Snakefile)" for line in lines]
+
+    def other_attributes(self, name: str, data: xr.Dataset) -> list[str]:
+        """Attributes that a dataset and its variables would get today."""
+        described = self.project.describe(name)
+        variables = {str(key): each for key, each in data.variables.items() if key in described}
+        now: dict[str, Any] = {**common_attributes(self.project)}
+        then = {key: each for key, each in data.attrs.items() if key in now}
+        now |= {key: attributes(described[key], each.dtype) for key, each in variables.items()}
+        then |= {key: each.attrs for key, each in variables.items()}
+        return changes(plain(then), plain(now))
+
+    def other_code(self, recorded: Mapping[str, str]) -> list[str]:
+        """Files of code whose contents are no longer those that a record has."""
+        now = contents_in(self.project.checkout, recorded)
+        return [path for path, made in recorded.items() if now.get(path) != made]
 
 
 @dataclass(frozen=True)

@@ -51,9 +51,16 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
     >>> schema |= {"$defs": {"described": {"properties": {"title": {}}}}}
     >>> list(mistakes({"stage": {}}, schema))
     ['stage: unknown key, allowed: release']
+    >>> list(mistakes({"period": {}}, {"properties": {"periods": {}}, "required": ["periods"]}))
+    ['period: unknown key, did you mean periods?']
     """
     if missing := [name for name in schema.get("required", []) if name not in config]:
-        yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
+        unknown = [name for name in config if name not in schema["properties"]]
+        misnamed = [name for name in unknown if get_close_matches(name, missing, n=1)]
+        yield from (f"{name}: unknown key{meant(name, missing)}" for name in misnamed)
+        if not misnamed:
+            names_of_all = ", ".join(missing)
+            yield f"{names_of_all} missing: leave out --replace-workflow-config to change parts"
         return
     yield from impossible_numbers(config)
     misplaced = settings_in_entries(config, schema)

@@ -217,15 +217,14 @@ def save_stage(
 ) -> None:
     """Compute and save the datasets of a stage, for the job of its rule.
 
-    `stage` has the function of each dataset. A function takes the parameters of its entry in the
-    configuration, and as keywords those settings of the run that are among its arguments. A dataset
-    records only these. The name of a dataset is a note of a ValueError of its function.
+    `stage` has the function of each dataset. It takes the parameters of the entry in the
+    configuration, and the settings of the run that it names as further arguments; the dataset
+    records these. The name of a dataset is a note of a ValueError of its function.
     """
     for name in snakemake.params.entries:
         entry = dict(snakemake.params.entries[name])
         title = entry.pop("title")
-        arguments = signature(stage[name]).parameters
-        settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
+        settings = {key: snakemake.params.settings[key] for key in settings_of(stage[name])}
         try:
             dataset = computed(stage[name], entry | settings)
         except ValueError as error:
@@ -238,13 +237,21 @@ def save_stage(
 def computed(function: Callable[..., xr.Dataset], given: Mapping) -> xr.Dataset:
     """Compute a dataset from its parameters, and record them in it.
 
-    The function takes the parameters of the entry, and as keywords the settings of the run that are
-    among its arguments.
+    The parameters are those of the entry, and the settings of the run that the function takes.
     """
-    settings = {name: given[name] for name in list(signature(function).parameters)[1:]}
-    entry = {name: each for name, each in given.items() if name not in settings}
-    found = function(entry, **settings)
-    return found.assign_attrs(parameters=json.dumps(plain(given), ensure_ascii=False))
+    settings = {key: given[key] for key in settings_of(function)}
+    entry = {key: each for key, each in given.items() if key not in settings}
+    dataset = function(entry, **settings)
+    return dataset.assign_attrs(parameters=json.dumps(plain(given), ensure_ascii=False))
+
+
+def settings_of(function: Callable[..., xr.Dataset]) -> list[str]:
+    """Return the settings of the run that a function takes: its arguments after the entry.
+
+    >>> settings_of(lambda entry, release: xr.Dataset())
+    ['release']
+    """
+    return list(signature(function).parameters)[1:]
 
 
 def save_record(snakemake: Any, sources: Mapping[str, Mapping], project: Project) -> None:

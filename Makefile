@@ -35,7 +35,7 @@ develop: setup
 	@$(ENVIRONMENT) install $(VENV) .developing requirements-develop.lock
 
 test: develop
-	OMP_NUM_THREADS=1 $(RUN) pytest --numprocesses 2 --dist loadgroup
+	OMP_NUM_THREADS=1 $(RUN) pytest --numprocesses 2 --dist loadfile
 
 lint: develop
 	$(RUN) ruff check .

@@ -112,7 +112,8 @@ MODELS = checkout(*sorted(TOP.glob("src/bouncing_ball/[!_]*.py"))) + modules("da
 PAPER = modules("paper")
 DRAWING = modules("figures", "motion", "curves", "paper", "drawing", "texts", "datasets")
 JUDGING = MODELS + PAPER + modules("claims", "measures", "verdicts", "judgements", "texts")
-WRITING = JUDGING + modules("tables", "article", "index", "pages", "origins", "templates")
+WRITING = JUDGING + modules("tables", "article", "index", "origins", "templates")
+WRITING += modules("pages", "numbers", "results")
 # The stages that the study of choices computes again.
 VARIED = [
     "restitution_model",

@@ -21,12 +21,9 @@ from paper_replication import judgements, origins, templates, texts
 from paper_replication.datasets import parameters
 from paper_replication.verdicts import VERDICTS
 
-# One worker, because texts are shared.
-pytestmark = pytest.mark.xdist_group("article")
-
 ROOT = Path(__file__).resolve().parents[1]
 TEXTS = ("paper", "supplement")
-TEMPLATES = sorted(article.TEMPLATES.glob("*.j2")) + sorted(ROOT.glob("src/paper_rep*/pages.*.j2"))
+TEMPLATES = sorted(article.TEMPLATES.glob("*.j2")) + sorted(ROOT.glob("src/paper_rep*/*.html.j2"))
 
 
 @pytest.fixture(scope="module")

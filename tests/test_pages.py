@@ -15,9 +15,6 @@ from carbonelli2011.claims import judge
 from paper_replication import judgements, origins
 from paper_replication import pages as text_pages
 
-# One worker, because pages are shared.
-pytestmark = pytest.mark.xdist_group("pages")
-
 CAPTIONS = {name: entry["caption"] for name, entry in ENTRIES.items() if "caption" in entry}
 
 

@@ -9,8 +9,7 @@ from tests.checkout import ROOT, Checkout
 
 from paper_replication.datasets import parameters, read
 
-# One worker, because the first acceptance is shared.
-pytestmark = pytest.mark.xdist_group("pendulum")
+PAGES = ("index.html", "paper.html", "numbers.html")
 
 
 def git(there, *arguments):
@@ -40,17 +39,26 @@ def test_a_dataset_a_claim_and_a_sentence(accepted):
     assert "\nAt 60° a swing takes 2.15 s." in (accepted.path / "paper.md").read_text("utf-8")
 
 
-def test_a_misnamed_section_is_refused_by_its_name(accepted, tmp_path):
-    there = Checkout(shutil.copytree(accepted.path, tmp_path / "pendulum"))
-    there.edit("config/config.yaml", "periods:", "period:")
-    status, _ = there.run("--cores", "1")
+def test_a_misnamed_section_is_refused_by_its_name(accepted):
+    accepted.edit("config/config.yaml", "periods:", "period:")
+    status, _ = accepted.run("--cores", "1")
+    accepted.edit("config/config.yaml", "period:", "periods:")
     assert status == "configuration: period: unknown key, did you mean periods?"
 
 
-def test_the_page_of_its_text_has_no_links_to_pages_that_it_lacks(accepted):
-    page = (accepted.path / "results/paper.html").read_text("utf-8")
-    assert re.findall('href="(.*?)"', page) == ["paper.html"]
-    assert 'src="figures/fig1.svg" alt="Figure\u00a01"' in page and "<math" in page
+def test_its_pages_have_no_links_to_pages_that_it_lacks(accepted):
+    folder = accepted.path / "results"
+    pages = {name: (folder / name).read_text("utf-8") for name in PAGES}
+    for page in pages.values():
+        for target in re.findall('(?:href|src)="(.*?)"', page):
+            file, _, anchor = target.partition("#")
+            assert not file or (folder / file).is_file(), target
+            assert not anchor or f'id="{anchor}"' in pages.get(file, page), target
+    assert 'src="figures/fig1.svg" alt="Figure\u00a01"' in pages["paper.html"]
+    assert "<math" in pages["paper.html"]
+    assert '<a class="number" href="numbers.html#paper-0"' in pages["paper.html"]
+    assert "fig1.period.sel(angle=60).item()" in pages["numbers.html"]
+    assert pages["index.html"].count('<span class="verdict reproduced">') == 2
 
 
 def test_a_changed_parameter_is_red_and_named_until_it_is_accepted(accepted):

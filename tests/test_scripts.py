@@ -30,9 +30,6 @@ from carbonelli2011.stages import (
 )
 from paper_replication.verdicts import against_print
 
-# One worker, because the hypotheses are shared.
-pytestmark = pytest.mark.xdist_group("scripts")
-
 ORBITS = 1e-9
 """Orbits are solved to 1e-11, and the closed form amplifies this on stiff contacts."""
 

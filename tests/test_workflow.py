@@ -18,9 +18,6 @@ from tests.reference import CONFIG, stage
 from paper_replication.configuration import entries, stages
 from paper_replication.datasets import settings_of
 
-# One worker, because a whole run is shared.
-pytestmark = pytest.mark.xdist_group("workflow")
-
 COMPUTED = stages(CONFIG).keys() - {"schematics"}
 ENTRIES = entries(CONFIG)
 FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}

@@ -5,7 +5,6 @@ number. The article is about the run with the parameters of the paper. For anoth
 name the differences instead.
 """
 
-import json
 import traceback
 from functools import partial
 from pathlib import Path
@@ -36,6 +35,14 @@ BEHIND = {
 }
 """The datasets behind the names that `text` gives to its templates."""
 
+FUNCTIONS = (
+    "carbonelli2011.measures",
+    "carbonelli2011.article",
+    "bouncing_ball.restitution",
+    "bouncing_ball.spring_damper",
+)
+"""The modules of the functions that `text` gives to its templates."""
+
 STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
 
@@ -54,11 +61,7 @@ def filled_in(
     try:
         return template.render(
             **datasets,
-            titles={key: data.attrs["title"] for key, data in datasets.items()},
             given={key: parameters(data) for key, data in datasets.items()},
-            code={
-                key: next(iter(json.loads(data.attrs["code"]))) for key, data in datasets.items()
-            },
             judged=judged,
             claim={row["claim"]: row for row in [*judged, *own]},
             error_limit=paper.LIMIT,

@@ -1,7 +1,6 @@
 """All texts and pages of a run: the article, the page of the results, the claims, the figures.
 
-Templates show the same parts: a part is a figure, a table or a dataset, with the claims that are
-shown next to it.
+Templates show the same parts (`paper_replication.pages`).
 """
 
 import re
@@ -18,10 +17,7 @@ from carbonelli2011.tables import TABLES
 from paper_replication import judgements, texts
 from paper_replication.datasets import Datasets, parameters
 from paper_replication.origins import bare
-from paper_replication.pages import Part, framed, numbers, page_of, rows_beside, unbroken
-
-SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
-"""Parts with claims that belong to no single figure or table."""
+from paper_replication.pages import PAGES, framed, numbers, page_of, parts, shown, unbroken
 
 
 def pages(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = False) -> dict:
@@ -37,7 +33,9 @@ def pages(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = False
         "figures/README.md": list_of_figures("md", datasets, entries),
         "index.html": list_of_figures("html", datasets, entries, site=site),
         "claims.html": framed(evidence, "claims", [("", "The claims and the evidence")]),
-        "numbers.html": numbers(marked, origin, datasets, article.TEMPLATES),
+        "numbers.html": numbers(
+            marked, origin, datasets, functions=article.FUNCTIONS, elsewhere=TABLE
+        ),
     }
     for name, text in marked.items():
         found[f"{name}.md"] = bare(text)
@@ -56,27 +54,22 @@ def list_of_figures(
 
     The evidence of the "claims" is HTML without a frame.
     """
-    found = parts(datasets, entries)
-    claims = datasets["claims"]
-    formulas = judgements.claims_of(claims, "restored formula")
+    every = parts(datasets, entries, CLAIMS, TABLES, TABLE)
+    formulas = judgements.claims_of(datasets["claims"], "restored formula")
     text = article.filled_in(
         name,
         datasets,
         kind,
+        title="When is a restitution coefficient enough? Results of the replication",
+        pages=PAGES,
         markdown=texts.markdown,
-        counts=judgements.counts(claims),
-        unasked=sum(each["verdict"] == "not asked" for each in judgements.counted(claims)),
         exceptions=exceptions(datasets["validity_map"]),
         shifts=shifts(datasets["validity_map"]),
         failing=partial(article.failing, datasets["validity_map"]),
         formulas=judgements.chosen(judgements.SECTIONS["restored formula"], formulas),
         checked_by=formulas[0]["condition"],
-        parts=found,
-        figures=[part for part in found if "PNG" in part.files],
-        tabulated=[part for part in found if part.table],
-        others=[part for part in found if part.files.keys() == {"dataset"}],
-        general=[part for part in found if not part.files],
         site=site,
+        **shown(datasets, every),
     )
     return with_subscripts(unbroken(text)) if kind == "html" else text
 
@@ -88,34 +81,6 @@ def with_subscripts(page: str) -> str:
     '<td title="τ_b">φ + τ<sub>b</sub>, r<sub>a</sub></td>'
     """
     return re.sub(r"([τφδϖΛζ′]|\br)_(\w+)(?=[^<>]*<)", r"\1<sub>\2</sub>", page)
-
-
-def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
-    """All figures in the order of the paper, tables and datasets, then `SEVERAL`."""
-    found = []
-    for name in sorted(entries, key=lambda name: (not name.startswith("fig"), name)):
-        entry = entries[name]
-        kinds = {"dataset": "nc"} if name in datasets else {}
-        if "caption" in entry:
-            kinds |= {"PNG": "png", "SVG": "svg"}
-        if entry.get("table"):
-            kinds |= {"CSV": "csv", "Markdown": "md"}
-        decided = {claim.beside for claim in CLAIMS if name in claim.datasets}
-        found.append(
-            Part(
-                name,
-                title=entry["title"],
-                caption=entry.get("caption", ""),
-                files={label: f"{name}.{kind}" for label, kind in kinds.items()},
-                rows=rows_beside(name, datasets, TABLE),
-                table=TABLES[name](datasets[name]) if entry.get("table") else (),
-                elsewhere=sorted(decided & {*entries}),
-            )
-        )
-    general = [
-        Part(key, title, rows=rows_beside(key, datasets, TABLE)) for key, title in SEVERAL.items()
-    ]
-    return found + general
 
 
 def exceptions(validity_map: xr.Dataset) -> list[list[str]]:

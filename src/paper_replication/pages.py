@@ -1,13 +1,16 @@
-"""Pages for a browser: texts in Markdown, and the origins of their numbers."""
+"""Pages for a browser: the results, texts in Markdown, and the origins of their numbers."""
 
+import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from html import escape
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
+import xarray as xr
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
@@ -15,8 +18,9 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from paper_replication import origins
 from paper_replication.datasets import Datasets
-from paper_replication.judgements import claims_of, counted
+from paper_replication.judgements import claims_of, counted, counts
 from paper_replication.templates import environment
+from paper_replication.verdicts import Claim
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,51 @@ class Part:
     elsewhere: Sequence[str] = ()
 
 
+# The page of the results
+
+
+SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
+"""Parts with claims that belong to no single figure or table."""
+
+
+def parts(
+    datasets: Datasets,
+    entries: Mapping[str, Mapping],
+    claims: Sequence[Claim],
+    tables: Mapping[str, Callable[[xr.Dataset], list[list[str]]]],
+    elsewhere: str = "",
+) -> list[Part]:
+    """Return all figures in the order of the paper, tables and datasets, then `SEVERAL`.
+
+    `tables` has the functions of the tables. The claims of the item `elsewhere` are in their table.
+    """
+    found = []
+    for name in sorted(entries, key=lambda name: (not name.startswith("fig"), name)):
+        entry = entries[name]
+        kinds = {"dataset": "nc"} if name in datasets else {}
+        if "caption" in entry:
+            kinds |= {"PNG": "png", "SVG": "svg"}
+        if entry.get("table"):
+            kinds |= {"CSV": "csv", "Markdown": "md"}
+        decided = {claim.beside for claim in claims if name in claim.datasets}
+        found.append(
+            Part(
+                name,
+                title=entry["title"],
+                caption=entry.get("caption", ""),
+                files={label: f"{name}.{kind}" for label, kind in kinds.items()},
+                rows=rows_beside(name, datasets, elsewhere),
+                table=tables[name](datasets[name]) if entry.get("table") else (),
+                elsewhere=sorted(decided & {*entries}),
+            )
+        )
+    general = [
+        Part(key, title, rows=rows_beside(key, datasets, elsewhere))
+        for key, title in SEVERAL.items()
+    ]
+    return found + general
+
+
 def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[dict]:
     """Return the claims next to a figure or table, without those of the table `elsewhere`."""
     return [
@@ -53,6 +102,31 @@ def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[dict]:
         for claim in [*counted(datasets["claims"]), *claims_of(datasets["claims"], "own claim")]
         if claim["beside"] == name and claim["item"] != elsewhere
     ]
+
+
+def shown(datasets: Datasets, every: Sequence[Part]) -> dict[str, Any]:
+    """Return what results.html.j2 and templates that extend it show, by names."""
+    claims = datasets["claims"]
+    return {
+        "counts": counts(claims),
+        "unasked": sum(claim["verdict"] == "not asked" for claim in counted(claims)),
+        "titles": {name: data.attrs["title"] for name, data in datasets.items()},
+        "code": {name: next(iter(json.loads(data.code))) for name, data in datasets.items()},
+        "parts": every,
+        "figures": [part for part in every if "PNG" in part.files],
+        "tabulated": [part for part in every if part.table],
+        "others": [part for part in every if part.files.keys() == {"dataset"}],
+        "general": [part for part in every if not part.files],
+    }
+
+
+def results(title: str, datasets: Datasets, every: Sequence[Part], pages: Mapping[str, str]) -> str:
+    """Return the page of the results: verdicts, figures, tables and datasets.
+
+    `pages` are those of the replication, as in `PAGES`.
+    """
+    template = environment(Path(__file__).parent).get_template("results.html.j2")
+    return unbroken(template.render(title=title, pages=pages, **shown(datasets, every)))
 
 
 # The article and its supplement
@@ -209,7 +283,7 @@ def with_links(body: str, pages: Mapping[str, str] = PAGES) -> str:
         return f'<a href="{page}#{anchor}">{text}</a>' if page in pages else text
 
     def figures(found: re.Match) -> str:
-        return linked(found[0], "index.html", f"fig{found[1]:0>2}")
+        return found[1] + linked(found[3], "index.html", found[2])
 
     def sections(found: re.Match) -> str:
         page = "supplement.html" if found[1].startswith("S") else "paper.html"
@@ -218,7 +292,8 @@ def with_links(body: str, pages: Mapping[str, str] = PAGES) -> str:
     def citations(found: re.Match) -> str:
         return re.sub(r"\d+", lambda n: linked(n[0], "paper.html", f"reference-{n[0]}"), found[0])
 
-    body = re.sub(r"<strong>Figure (\d+)\.</strong>", figures, body)
+    caption = r'(<img src="figures/(\w+)\.svg"[^>]*>\s*)(<strong>.*?</strong>)'
+    body = re.sub(caption, figures, body)
     body = re.sub(r"\bSection (S?\d(?:\.\d)?)", sections, body)
     body = re.sub(r"\[\d+(?:, \d+)*\]", citations, body)
     return re.sub(r"doi:(10\.[^\s<]+[^\s<.,])", r'<a href="https://doi.org/\1">\g<0></a>', body)
@@ -231,21 +306,37 @@ def numbers(
     texts: Mapping[str, str],
     origin: Mapping[str, Sequence[origins.Origin]],
     datasets: Datasets,
-    templates: Path,
+    pages: Mapping[str, str] = PAGES,
+    functions: Sequence[str] = (),
+    elsewhere: str = "",
 ) -> str:
     """Return the page of what the texts print: sentences, expressions, datasets and claims.
 
-    `texts` have marks, and `origin` has the origins of their expressions. The folder of `templates`
-    has numbers.html.j2.
+    `texts` have marks, and `origin` has the origins of their expressions. `functions` are the
+    modules of the functions in expressions. The claims of the item `elsewhere` are in their table.
     """
     judged = counted(datasets["claims"])
     sentences = {name: sentences_of(text, origin[name], judged) for name, text in texts.items()}
-    template = environment(templates).get_template("numbers.html.j2")
+    every = [row for found in sentences.values() for _, rows in found for row in rows]
+    terms = [row["terms"][0].partition(" | ")[0] for row in every]
+    examples = (
+        term
+        for term in terms
+        if re.fullmatch(r"\w+\.\w+", term) and term.partition(".")[0] in datasets
+    )
+    template = environment(Path(__file__).parent).get_template("numbers.html.j2")
     contents = [
         ("", "Where the numbers come from"),
         *((name, name.title()) for name in texts),
     ]
-    return framed(template.render(texts=sentences), "numbers", contents)
+    body = template.render(
+        texts=sentences,
+        example=next(examples, ""),
+        functions=functions,
+        elsewhere=elsewhere,
+        pages=pages,
+    )
+    return framed(body, "numbers", contents, pages)
 
 
 def sentences_of(

@@ -11,12 +11,13 @@ from paper_replication.texts import fixed, listed, percent, share_text, short
 
 @cache
 def environment(templates: Path, marked: bool = False) -> jinja2.Environment:
-    """Return the Jinja environment of a folder of templates, with the filters for numbers.
+    """Return the Jinja environment of a folder of templates and of those of any paper, with the
+    filters for numbers.
 
     If `marked`, it marks what the expressions print (see `origins`).
     """
     found = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
+        loader=jinja2.FileSystemLoader([templates, Path(__file__).parent], encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
         autoescape=jinja2.select_autoescape(["html.j2"], default=False),
         trim_blocks=True,

@@ -20,6 +20,7 @@ VARIABLES = {
     "period": Variable("period", "T", "Eq. 1", "s"),
     **{name: Variable(name) for name in NOTHING},
 }
+PAGES = {"index.html": "Results", "paper.html": "Article", "numbers.html": "Numbers"}
 TEXT = """# The period of a pendulum
 
 At 60° a swing takes {{ fig1.period.sel(angle=60).item() | fixed(2) }} s. The period is

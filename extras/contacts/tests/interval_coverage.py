@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from bouncing_ball_contacts.intervals import curves_of, errors_shown, estimate, impacts_of
+from bouncing_ball_contacts.intervals import curves_of, estimate, impacts_of
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
 
@@ -689,7 +689,7 @@ def answer(kind, rng):
     while recording.kind != "track" and np.min(np.concatenate(recording.chains)) <= 0:
         recording = make(rng, r, scatter=scatter)
     impacts = impacts_of(recording)
-    known = stated[0] if stated else errors_shown(recording, impacts, 0.0)
+    known = stated[0] if stated else impacts.known
     at = math.exp(float(np.mean(np.log(impacts.speed))))
     curves = curves_of(impacts, known, at, rounding_of(recording))
     return estimate(curves), math.log(float(np.squeeze(r(at))))

@@ -821,7 +821,7 @@ SPOILED = {
 
 
 @pytest.mark.parametrize("kind", SPOILED)
-def test_a_spoiled_film_holds_r_with_less_than_twice_the_width_of_a_clean_one(kind):
+def test_a_spoiled_film_holds_r_with_less_than_three_times_the_width_of_a_clean_one(kind):
     """Of films with copies and of sensors without echo most impacts were lost without a word."""
     spoil, said = SPOILED[kind]
     widths, holds = [], []
@@ -836,7 +836,7 @@ def test_a_spoiled_film_holds_r_with_less_than_twice_the_width_of_a_clean_one(ki
         widths.append((np.ptp(found.interval), np.ptp(clean.interval)))
     wide, narrow = np.median(widths, axis=0)
     # Of twelve intervals of 95 %, fewer than nine hold r in one of 5,000 cases.
-    assert wide < 2 * narrow and sum(holds) >= 9
+    assert wide < 3 * narrow and sum(holds) >= 9
 
 
 def test_rounded_positions_near_a_top_are_no_copies():
@@ -906,7 +906,7 @@ def test_a_tracker_that_jumps_to_another_ball_is_named():
     assert "does the tracker jump, as to another ball?" in str(fit(columns).notes)
 
 
-RECORDINGS = {"tables", "tracks", "flights", "recordings", "intervals", "fits", "sounds"}
+RECORDINGS = {"tables", "tracks", "flights", "cameras", "recordings", "intervals", "fits", "sounds"}
 BOTH = {"units", "bounces"}
 JOINED = {"cli", "__init__", "__main__"}
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.flights import drag_of, impact_of
+from bouncing_ball_contacts.cameras import KINK
+from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
     Impacts,
     curves_of,
-    errors_shown,
     estimate,
     impacts_of,
     misread,
@@ -35,6 +35,10 @@ from bouncing_ball_contacts.units import (
 _WITH_DRAG = ("flights", "heights", "drops", "track")
 # Mass in kg and diameter in m of a ball that the drag changes much.
 _TABLE_TENNIS_BALL = (0.0027, 0.040)
+# Contact in s by which r changes as by a longer one.
+_SHORT_CONTACT = 1e-4
+# Speed in m/s at which the picture of a ball seldom drifts.
+_DRIFT = 0.1
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -195,66 +199,73 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     return note * (2 * by_drag > found.interval[1] - found.interval[0])
 
 
-def _contact_note(found: Fit) -> str:
-    """Return what the contacts do to r of times between impacts, or of parabolas that meet."""
+def _contact_note(found: Fit, drag: float, known: Any, rounding: float) -> str:
+    """Return what the contacts do to r of times between impacts, or of flights that meet."""
     recording = found.recording
     is_film = recording.kind == "track" and not recording.no_speed
     if not is_film and (recording.kind != "flights" or recording.is_free):
         return ""
-    lasts = found.contact_time
-    if lasts and not is_film:
-        return f"the contact, {show(lasts, 's')}, is taken off each time between two impacts"
-    impacts = found.impacts
+    if found.contact_time:
+        return (
+            f"the contact, {show(found.contact_time, 's')}, is taken off each time between two "
+            "impacts"
+        )
     low, high = found.interval
-    # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
-    # Parabolas meet at half of a contact, where both are faster by g times it.
-    lower = float(np.mean((1 - impacts.restitution) / impacts.speed)) * STANDARD_GRAVITY / 2
+    shorter = impacts_of(without_contacts(recording, _SHORT_CONTACT), drag)
+    r = estimate(curves_of(shorter, known, found.speed, rounding)).of_r[0]
+    lower = (found.restitution - r) / _SHORT_CONTACT
     matters = (high - low) / (2 * lower) if lower > 0 else math.inf
     # Contacts of rubber, the longest ones, last for 10 ms.
-    within = "parabolas meet within" if is_film else "times between impacts include"
-    remedy = "" if is_film else "; give --contact-time"
+    within = "flights meet within" if is_film else "times between impacts include"
     return (matters < 0.01) * (
         f"{within} the contact: r is too high by {lower / 1000:.2g} for each ms of it, which "
-        f"matters above {show(matters, 's')}{remedy}"
+        f"matters above {show(matters, 's')}; give --contact-time"
     )
 
 
-def _gravity_note(found: Fit) -> str:
-    """Return how gravity changes in a film; empty if a quarter of the interval is more than r does.
+def _film_notes(found: Fit) -> list[str]:
+    """Return what the films leave open of the camera."""
+    low, high = found.interval
+    width = high - low
+    v, r = found.impacts.speed, found.impacts.restitution
+    # Derivative of r with respect to a speed of the picture, which adds to one speed of the ball.
+    moved = float(np.mean((1 + r) / v))
+    films = found.impacts.films
+    misfit = max((film.misfit for film in films), default=1.0)
+    floor = max((abs(film.floor) for film in films), default=0.0)
+    is_single = bool(films) and all(len(film.speeds) == 1 for film in films)
+    return holding(
+        [
+            (
+                misfit > 1,
+                f"the flights are not quite those of one camera that stands still, as with a lens "
+                f"that bends lines or a zoom: errors are taken as {misfit:.2g} times as large",
+            ),
+            (
+                floor * KINK * moved > width / 4 and not found.recording.has_sideways,
+                f"the floor moves by {show(floor, 'm/s')} in the picture: if the picture is turned "
+                "and the ball drifts, a column x of its positions makes the interval narrower",
+            ),
+            (
+                is_single and moved * _DRIFT > width / 2,
+                f"one impact does not show whether the picture of the ball drifts upwards: each "
+                f"cm/s changes r by {moved / 100:.2g}, which matters above "
+                f"{show(width / 2 / moved, 'm/s')}; film a second impact",
+            ),
+        ]
+    )
 
-    If gravity is k₁ g in the first flights of n impacts and k₂ g in the last ones, speeds are wrong
-    by these factors, and the mean of ln r by ln(k₂/k₁)/n. A parabola through n positions with the
-    error σ in a time T has a gravity with the variance 720 σ²/(n T⁴).
-    """
-    if found.recording.kind != "track":
-        return ""
-    films = found.recording.films
-    ratios = [1.0]
-    for film in films:
-        gravity, misfit = np.array([impact_of(each)[2:4] for each in film]).T
-        flights = [[each[each[:, 2] == after, 0] for after in (0, 1)] for each in film]
-        weights = [sum(len(t) * np.ptp(t) ** 4 for t in both) for both in flights]
-        # Three standard errors, and the drag of a table tennis ball that falls from 2 m.
-        doubt = 3 * misfit * np.sqrt(720 / np.array(weights)) + 0.005 * gravity
-        ratios.append(np.max(gravity - doubt) / np.min(gravity + doubt))
-    changes = found.restitution * math.log(max(ratios)) / sum(map(len, films))
-    return (
-        f"gravity is not one number: it changes by {max(ratios) - 1:.0%} from flight to flight, "
-        f"which makes r wrong by up to {changes:.2g}: is the camera oblique, or does it zoom?"
-    ) * (changes > (found.interval[1] - found.interval[0]) / 4)
 
-
-def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, ...]:
+def _notes(found: Fit, drag: float, known: Any, rounding: float, value: float) -> tuple[str, ...]:
     """Return the notes on a fit, the severest first; `value` is r before it is limited to 1."""
     impacts = found.impacts
     v = impacts.speed
     at = found.speed
     unit = KINDS[found.recording.kind][0]
     wrong = [f"r = {impacts.restitution[i]:.3g} of impact {i + 1}" for i in misread(impacts)]
-    drag = _drag_note(found, known, rounding)
-    contact = _contact_note(found)
-    gravity = _gravity_note(found)
-    is_taken_off = found.recording.kind == "flights" and bool(contact and found.contact_time)
+    by_drag = _drag_note(found, known, rounding)
+    contact = _contact_note(found, drag, known, rounding)
+    is_taken_off = bool(contact and found.contact_time)
     return tuple(
         holding(
             [
@@ -263,7 +274,7 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
                     f"{', '.join(wrong)}: far from all others, as by one wrong or missing number; "
                     "--leave-out leaves its line out",
                 ),
-                (gravity, gravity),
+                *((True, note) for note in _film_notes(found)),
                 (value > 1, f"r = {value:.4f} is above 1 within its error: 1 is taken"),
                 # A speed that is typed is rounded.
                 (
@@ -276,7 +287,7 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
                     "heights are those of the lowest point of the ball: subtract its diameter from "
                     "those of its top",
                 ),
-                (drag, drag),
+                (by_drag, by_drag),
                 (contact and not is_taken_off, contact),
                 (
                     0 < found._groups < 3,
@@ -349,21 +360,21 @@ def fit(
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
+    # A contact that is not known is taken to have no duration.
+    lasts = given("contact time", contact_time, "s") or recording.contact_time
     refuse(
         [
             (
-                recording.no_speed and (drag or speed is not None),
+                recording.no_speed and (drag or lasts or speed is not None),
                 f"{recording.name}: no speed is known: {recording.no_speed}",
             )
         ]
     )
-    # A contact that is not known is taken to have no duration.
-    lasts = given("contact time", contact_time, "s") or recording.contact_time
-    if recording.kind == "flights" and not recording.is_free:
+    if lasts and recording.kind in ("flights", "track") and not recording.is_free:
         recording = without_contacts(recording, lasts)
     impacts = impacts_of(recording, drag)
     v = impacts.speed
-    known = errors_shown(recording, impacts, drag) if stated is None else stated
+    known = impacts.known if stated is None else stated
     rounding = rounding_of(recording) if known is None else 0.0
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
@@ -403,4 +414,4 @@ def fit(
         diameter=metres,
         notes=(),
     )
-    return replace(found, notes=_notes(found, known, rounding, value))
+    return replace(found, notes=_notes(found, drag, known, rounding, value))

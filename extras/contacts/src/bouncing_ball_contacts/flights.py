@@ -57,15 +57,36 @@ def speeds_of(heights: Array, drag: float) -> tuple[Array, Array]:
     return down, up
 
 
-def _fall(since_top: Array, drag: float) -> tuple[Array, Array]:
+def fall_of(since_top: Array, drag: float) -> tuple[Array, Array]:
     """Return -y/g and -v/g at times in s after the top; times on the way up are negative."""
     a = math.sqrt(STANDARD_GRAVITY * max(drag, _NO_DRAG))
     # A ball rises for less than π/2a.
     rise = np.clip(a * since_top, -1.5, 0.0)
-    fall = a * np.maximum(since_top, 0.0)
+    # Beyond it no ball gets faster.
+    fall = np.clip(a * since_top, 0.0, 300.0)
     # ln(cosh x) and ln(cos x), also of small x.
     depth = (np.log1p(np.sinh(fall) ** 2) - np.log1p(-(np.sin(rise) ** 2))) / (2 * a**2)
     return depth, (np.tan(rise) + np.tanh(fall)) / a
+
+
+def meeting_of(start: Array, slope: Array, gravity: float, drag: float) -> tuple[Array, ...]:
+    """Return where flights meet: the time, the height, and the speeds down and up, shape (...).
+
+    ``start`` and ``slope``, shape (2, ...), are those at time 0 of parabolas that have the tops of
+    the flights before and after an impact; the drag, in 1/m, needs times in s.
+    """
+    tops = slope / gravity
+    heights = start + gravity * tops**2 / 2
+    meet = (start[1] - start[0]) / (slope[0] - slope[1])
+    # Newton's method, from where the parabolas meet.
+    for _ in range(4):
+        depths, speeds = fall_of(meet - tops, drag)
+        meet = meet + (heights[1] - heights[0] - gravity * (depths[1] - depths[0])) / (
+            gravity * (speeds[1] - speeds[0])
+        )
+    depths, speeds = fall_of(meet - tops, drag)
+    floor = np.mean(heights - gravity * depths, axis=0)
+    return meet, floor, gravity * speeds[0], -gravity * speeds[1]
 
 
 def impact_of(track: Array, drag: float = 0.0) -> Array:
@@ -93,18 +114,9 @@ def impact_of(track: Array, drag: float = 0.0) -> Array:
         start, slope = found[1:].reshape(2, 2)
         tops = slope / gravity
         since_top = since - np.where(after > 0, tops[1], tops[0])
-        by_drag = gravity * (since_top**2 / 2 - _fall(since_top, drag)[0])
-    heights = start + gravity * tops**2 / 2
-    meet = (start[1] - start[0]) / (slope[0] - slope[1])
-    # Newton's method, from where the parabolas meet.
-    for _ in range(4):
-        depths, speeds = _fall(meet - tops, drag)
-        apart = np.diff(heights - gravity * depths)[0]
-        meet += apart / (gravity * np.diff(speeds)[0])
-    depths, speeds = _fall(meet - tops, drag)
-    down, up = gravity * speeds * [1, -1]
+        by_drag = gravity * (since_top**2 / 2 - fall_of(since_top, drag)[0])
+    meet, floor, down, up = meeting_of(start, slope, gravity, drag)
     misfit = math.sqrt(float(np.mean((columns @ found + by_drag - y) ** 2)))
-    floor = np.mean(heights - gravity * depths)
     # Derivatives of ln r of two parabolas with respect to gravity, the starts and the slopes.
     sum_of_both = 1 / up + 1 / down
     moves = gravity * sum_of_both / np.diff(slope)[0]

@@ -59,11 +59,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize, special
 
+from bouncing_ball_contacts.cameras import Film, film_of
 from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording
 from bouncing_ball_contacts.tables import Lines
-from bouncing_ball_contacts.tracks import speeds_of_film
-from bouncing_ball_contacts.units import Array, Refused, refuse, show
+from bouncing_ball_contacts.tracks import FEWEST
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array, Refused, refuse, show
 
 # Of each kind of recording: the unit of a reading, its usual standard deviation, and the powers of
 # the readings with which the speeds before and after an impact go. Those of series are alike; of a
@@ -96,6 +97,9 @@ _LONGEST = 1000
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 
 
+_TOO_LONG = "contact time: {} is longer than flights are: is its unit right?"
+
+
 # Readings to impacts.
 
 
@@ -112,6 +116,11 @@ class Impacts:
         speeds in m/s, or r. Both have one matrix for each series, because series share no reading.
     usual
         Usual standard deviation of a reading.
+    known
+        Standard deviations of the readings of each series, or of each r, that the recording has or
+        shows; None if they are not known.
+    films
+        Fits of the films of a track.
     groups
         What impacts that share an error have in common: a height, a film, or a name.
     scatter, width
@@ -126,6 +135,8 @@ class Impacts:
     of_speed: tuple[Array, ...]
     usual: float
     groups: NDArray[Any]
+    known: Array | None = None
+    films: tuple[Film, ...] = ()
     scatter: float = _SCATTER
     width: float = _WIDTH_OF_SCATTER
     is_set: bool = True
@@ -185,6 +196,13 @@ def are_told(impacts: Impacts, known: float | Array | None) -> bool:
     return bool(20 * covariance**2 <= product)
 
 
+def _error_of_speed(film: Film) -> float:
+    """Return the standard deviation of a speed in m/s, to which speeds of r contribute alike."""
+    before, after = film.speeds.T
+    of_r = np.linalg.norm(film.readings, axis=1)
+    return float(np.median(of_r / np.hypot(1 / before, 1 / after)))
+
+
 def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     """Return the impacts of a recording; drag is ρ C A/(2 m) in 1/m.
 
@@ -195,9 +213,9 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     """
     kind = recording.kind
     chains = recording.chains
-    if kind == "track":
-        films = [speeds_of_film(film, drag, recording.has_clock) for film in recording.films]
-        chains = (np.concatenate(films),)
+    films = tuple(film_of(film, drag, recording.has_clock) for film in recording.films)
+    if films:
+        chains = tuple(film.speeds for film in films)
     pairs = np.concatenate(
         [
             values if values.ndim == 2 else np.column_stack([values[:-1], values[1:]])
@@ -236,24 +254,20 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         before, _ = speeds_of(before, drag)
         _, after = speeds_of(after, drag)
     series = [each for values in chains for each in _derivatives(kind, values)]
+    known = recording.uncertainty
+    if films:
+        # The error of a speed to which the errors of a film amount.
+        known = np.array([_error_of_speed(film) for film in films])
+        series = [
+            (film.readings / size, film.of_speed / size)
+            for film, size in zip(films, known, strict=True)
+        ]
     readings, of_speed = zip(*series, strict=True)
     groups = np.arange(len(pairs)) if recording.groups is None else recording.groups
     is_set = kind in ("drops", "coefficients")
     log_r = np.log(after / before)
     usual = KINDS[kind][1]
-    return Impacts(before, log_r, readings, of_speed, usual, groups, is_set=is_set)
-
-
-def errors_shown(recording: Recording, impacts: Impacts, drag: float) -> Array | None:
-    """Return the standard deviations of readings that a recording has, or that its films show.
-
-    By the distances of the positions from their parabolas r of an impact has an error, to which the
-    speeds before and after it contribute alike.
-    """
-    if recording.kind != "track":
-        return recording.uncertainty
-    of_r = np.array([impact_of(each, drag)[-1] for each in recording.chains])
-    return of_r * impacts.speed / np.sqrt(1 + impacts.restitution**-2)
+    return Impacts(before, log_r, readings, of_speed, usual, groups, known, films, is_set=is_set)
 
 
 def group_means(
@@ -285,7 +299,9 @@ def group_means(
     log_r = np.bincount(of, impacts.log_r) / sizes
     within = math.sqrt(np.sum((impacts.log_r - log_r[of]) ** 2) / (len(of) - len(names)))
     prior = _SCATTER_OF_GROUPS * math.hypot(within, _SMALLEST_WITHIN), _WIDTH_OF_GROUPS
-    means = Impacts(np.exp(log_v), log_r, readings, of_speed, impacts.usual, names, *prior)
+    means = Impacts(
+        np.exp(log_v), log_r, readings, of_speed, impacts.usual, names, None, (), *prior
+    )
     return means, 1.0 if isinstance(known, np.ndarray) else known
 
 
@@ -315,20 +331,35 @@ def misread(impacts: Impacts) -> Lines:
     return found if is_far and len(away) - len(found) > 2 else found[:0]
 
 
+def _without_contact(recording: Recording, lasts: float) -> Iterator[Array]:
+    """Yield the tracks of a recording without positions and time of the contacts in s."""
+    for film in recording.films:
+        fits = np.array([impact_of(each) for each in film])
+        # Times of slow motion are longer than true ones.
+        slow = 1.0 if recording.has_clock else math.sqrt(STANDARD_GRAVITY / fits[:, 2].mean())
+        for i, track in enumerate(film):
+            t, _, after = track.T
+            left = np.min(np.abs(t - fits[:, 4, None]), axis=0) > slow * lasts
+            if min(np.sum(left * after), np.sum(left * (1 - after))) < FEWEST:
+                raise Refused(_TOO_LONG.format(show(lasts, "s")))
+            yield (track - np.outer((i + after) * slow * lasts, [1, 0, 0]))[left]
+
+
 def without_contacts(recording: Recording, lasts: float) -> Recording:
-    """Return a recording with the contact subtracted from flights from touch to touch.
+    """Return a recording with the contact subtracted from flights from touch to touch, or from the
+    times of a film after each of its impacts.
 
     Raises
     ------
     Refused
         If a contact in s lasts longer than half of the flights, or than two touches are apart.
     """
+    if recording.kind == "track":
+        return replace(recording, chains=tuple(_without_contact(recording, lasts)))
     chains = tuple(flights - lasts for flights in recording.chains)
     rest = np.concatenate(chains)
     if rest.min() <= 0 or rest.sum() < np.concatenate(recording.chains).sum() / 2:
-        raise Refused(
-            f"contact time: {show(lasts, 's')} is longer than flights are: is its unit right?"
-        )
+        raise Refused(_TOO_LONG.format(show(lasts, "s")))
     return replace(recording, chains=chains)
 
 

@@ -9,7 +9,7 @@ their line.
 import itertools
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -48,7 +48,7 @@ _HALVES = ("drop height", "rebound height", "trial", "speed before", "speed afte
 _COMPUTED = {
     "drops": ("restitution", "average"),
     "speeds": ("restitution",),
-    "track": ("restitution", "speed", ""),
+    "track": ("restitution", "speed", "sideways", ""),
     "times": ("restitution", "interval", "height", "drop height"),
     "flights": ("restitution",),
     "heights": ("restitution",),
@@ -98,6 +98,8 @@ class Recording:
     has_clock : bool
         Whether times of a film are true. Otherwise positions are in m, and the times follow from
         the free fall.
+    has_sideways : bool
+        Whether a column x showed how a film is turned.
     no_speed : str
         Why the speeds of a film are not known, and what to do; empty if they are known.
     notes : tuple of str
@@ -115,12 +117,15 @@ class Recording:
     head: dict[str, str] = field(default_factory=dict)
     groups: NDArray[Any] | None = None
     has_clock: bool = True
+    has_sideways: bool = False
     no_speed: str = ""
     notes: tuple[str, ...] = ()
 
     @property
     def films(self) -> list[tuple[Array, ...]]:
         """Tracks of the impacts of each film, which begins with an earlier time."""
+        if self.kind != "track":
+            return []
         begins = [track[0, 0] for track in self.chains]
         ends = np.flatnonzero(np.diff(begins) < 0) + 1
         edges = itertools.pairwise([0, *ends, len(begins)])
@@ -369,10 +374,14 @@ def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: f
 
 
 class _Film(NamedTuple):
-    """Times in s, positions and lines of a film, and which positions are left out."""
+    """Times in s, positions and lines of a film, and which positions are left out.
+
+    Positions sideways ``x`` are NaN if they are not known.
+    """
 
     t: Array
     y: Array
+    x: Array
     lines: Lines
     is_copy: NDArray[np.bool_]
     is_out: NDArray[np.bool_]
@@ -391,8 +400,22 @@ class _Film(NamedTuple):
             lines[i]: each for i, each in unused.items()
         }
 
+    def upright(self, tracks: Iterable[Array]) -> "_Film":
+        """Return the film with positions along gravity, the acceleration of the flights in tracks.
 
-def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
+        A turned picture adds a part of the ball's drift to the positions upwards.
+        """
+        pull = np.zeros(2)
+        for t, _, after in (each.T for each in tracks):
+            at = np.searchsorted(self.t, t)
+            lines = np.column_stack([after, 1 - after, after * t, (1 - after) * t])
+            bend = t**2 - lines @ np.linalg.lstsq(lines, t**2, rcond=None)[0]
+            pull += bend @ np.column_stack([self.x, self.y])[at]
+        turned = np.column_stack([self.x, self.y]) @ pull * np.sign(pull[1]) / np.hypot(*pull)
+        return self._replace(y=turned)
+
+
+def _film(columns: list[Column], t: Array, y: Array, x: Array, lines: Lines) -> _Film:
     """Return a film of positions; its rounded times are replaced by those of even frames."""
     frames = np.arange(len(t))
     even = np.polyval(np.polyfit(frames, t, 1), frames)
@@ -406,7 +429,18 @@ def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
     left = np.flatnonzero(~is_copy)
     if len(left) > 2 * FEWEST:
         is_out[left] = outliers(t[left], y[left], digit)
-    return _Film(t, y, lines, is_copy, is_out)
+    return _Film(t, y, x, lines, is_copy, is_out)
+
+
+def _sideways(table: Table, positions: Column) -> Array:
+    """Return the positions x in the unit of others; NaN without one such column."""
+    columns = table.of("sideways")
+    if len(columns) != 1 or (columns[0].unit in units_of("m")) != (positions.unit in units_of("m")):
+        return np.full(len(table.lines), math.nan)
+    units = [f"1 {each.unit}" for each in (columns[0], positions)]
+    is_length = positions.unit in units_of("m")
+    x, y = (in_si("unit", each, "m") if is_length else 1.0 for each in units)
+    return columns[0].numbers * x / y
 
 
 def _films(table: Table, columns: list[Column]) -> list[_Film]:
@@ -414,9 +448,9 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
     films = []
     for part in _series(table):
         times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
-        both = np.column_stack([part.values(times), positions.numbers])
+        both = np.column_stack([part.values(times), positions.numbers, _sideways(part, positions)])
         # A frame without a position is no end of a film.
-        is_end = np.isnan(both).all(axis=1)
+        is_end = np.isnan(both[:, :2]).all(axis=1)
         for rows in np.split(np.arange(len(both)), np.flatnonzero(is_end)):
             frames = rows[~np.isnan(both[rows, 0])]
             table.refuse(
@@ -427,8 +461,8 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
             )
             found = frames[~np.isnan(both[frames, 1])]
             if len(found) > 2 * FEWEST:
-                t, y = both[found].T
-                films.append(_film(columns, t - t[0], y, part.lines[found]))
+                t, y, x = both[found].T
+                films.append(_film(columns, t - t[0], y, x, part.lines[found]))
     if not films:
         raise Refused(f"{table.name}: too few lines of a track; tops are one column, height")
     return films
@@ -507,6 +541,14 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     # Upside down no flight is a parabola.
     ways = [[film.impacts(way) for film in films] for way in (1, -1)]
     films_of = max(ways, key=lambda each: [sum(map(len, part)) for part in zip(*each, strict=True)])
+    way = 1 if films_of is ways[0] else -1
+    has_sideways = all(np.isfinite(film.x).all() for film in films)
+    if has_sideways and any(found for found, _ in films_of):
+        films = [
+            film.upright(found.values()) if found else film
+            for film, (found, _) in zip(films, films_of, strict=True)
+        ]
+        films_of = [film.impacts(way) for film in films]
     of_films = [found for found, _ in films_of]
     unused = [others for _, others in films_of]
     numbers = [line for each in of_films for line in each]
@@ -524,7 +566,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
         (no_speed, f"no speed is known, and no drag of the air is removed: {no_speed}"),
         *((True, note) for note in _left_out(films, of_films, unused)),
         (
-            films_of is ways[1],
+            way < 0,
             "the positions grow downwards, as in a picture: they were turned",
         ),
     ]
@@ -536,6 +578,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
         tuple(each * [1, metres or 1, 1] for each in tracks),
         groups=groups,
         has_clock=not metres,
+        has_sideways=has_sideways,
         no_speed=no_speed,
         notes=tuple(holding(notes)),
     )
@@ -609,7 +652,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     if not sum(map(len, recording.chains)):
         named = ", ".join(each.name for each in columns)
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
-    used = [*columns, *errors]
+    used = [*columns, *errors, *(table.of("sideways") if recording.has_sideways else [])]
     lasts = table.head.get("contact time")
     ignored = [
         each for each in table.columns if each.name and each not in used and each.role not in TEXTS

@@ -54,6 +54,7 @@ NAMES = {
     "restitution": "restitution, restitution coefficient, coefficient of restitution, COR, e, r",
     "uncertainty": "uncertainty, standard deviation, std, error",
     "position": "y, z, ym, y position, position, distance",
+    "sideways": "x, xm, x position",
     "frame": "frame, frames, frame number, slice",
     "ball": "ball, name, body, sample",
     "recording": "recording, run, series, experiment",

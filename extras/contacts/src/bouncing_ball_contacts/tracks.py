@@ -6,14 +6,13 @@ outliers, and frames that are missing. An impact lies between two flights.
 
 import itertools
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array, holding
+from bouncing_ball_contacts.units import Array, holding
 
 FEWEST = 4
 """Positions that a flight has at least, without positions next to impacts."""
@@ -29,36 +28,6 @@ TOLD = (_GAP, _NO_PARABOLAS, _HIT)
 """Reasons that are said of an answer, too: at its end each film has impacts with the others."""
 # Median of the absolute value of a normally distributed number with the standard deviation 1.
 _MEDIAN = 0.6745
-
-
-def speeds_of_film(tracks: Sequence[Array], drag: float, has_clock: bool) -> Array:
-    """Return the speeds in m/s before and after the impacts of a film, shape (n, 2).
-
-    Gravity is the scale of each impact. Without a clock positions are in m, and times are scaled
-    until gravity is the standard one.
-
-    A camera that moves, or that is tilted while the ball moves sideways, adds one speed to all
-    positions. It is the speed at which the floor moves from impact to impact, and is subtracted.
-
-    Parameters
-    ----------
-    tracks : sequence of arrays
-        Of each impact, as of `impact_of`.
-    drag : float
-        ρ C A/(2 m) in 1/m.
-    has_clock : bool
-        Whether times are true.
-    """
-    for _ in range(1 if has_clock else 5):
-        before, after, gravity, _, time, floor, _ = np.transpose(
-            [impact_of(x, drag) for x in tracks]
-        )
-        slow = 1.0 if has_clock else math.sqrt(max(gravity.mean() / STANDARD_GRAVITY, 1e-9))
-        tracks = [each * [slow, 1, 1] for each in tracks]
-    since = time - time.mean()
-    moves = since @ floor / max(since @ since, 1e-9)
-    speeds = np.column_stack([before + moves, after - moves])
-    return speeds * (STANDARD_GRAVITY / gravity)[:, None]
 
 
 def _third_differences(t: Array, y: Array) -> Array:

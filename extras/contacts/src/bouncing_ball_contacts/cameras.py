@@ -107,6 +107,35 @@ def _misfit(flight: Array, since: Array, left: Array, degrees: float) -> float:
     return math.sqrt(ratio) if special.fdtrc(more, free, max(ratio, 0.0)) < _CHANCE else 1.0
 
 
+def _seen(
+    found: Array, flight: Array, since: Array, later: Array, y: Array, drag: float
+) -> tuple[Array, Array]:
+    """Return where positions of flights are seen, and the derivatives of that, shape (n, 6).
+
+    The derivatives are with respect to gravity, c, e, ρ, and the start and slope of each flight.
+    """
+    gravity, bend, recede, read = found[:_GLOBALS]
+    start, slope = found[_GLOBALS:].reshape(-1, 2)[flight].T
+    top = slope / gravity
+    fallen, speed = fall_of(since - read * y - top, drag)
+    p = start + gravity * (top**2 / 2 - fallen)
+    depth = 1 + bend * p + recede * later
+    of_p = np.column_stack(
+        [
+            -(top**2) / 2 - fallen - speed * top,
+            np.zeros_like(p),
+            np.zeros_like(p),
+            gravity * speed * y,
+            np.ones_like(p),
+            top + speed,
+        ]
+    )
+    derivatives = ((1 + recede * later) / depth**2)[:, None] * of_p
+    derivatives[:, 1] = -((p / depth) ** 2)
+    derivatives[:, 2] = -p * later / depth**2
+    return p / depth, derivatives
+
+
 def _on_one_floor(state: Array, changes: Array, impacts: int) -> tuple[Array, Array]:
     """Return a state and its changes by errors, given that the floor moves evenly in the picture.
 
@@ -115,8 +144,9 @@ def _on_one_floor(state: Array, changes: Array, impacts: int) -> tuple[Array, Ar
     than expected (R. C. Paule, J. Mandel, J. Res. Natl. Bur. Stand. 87 (1982) 377).
     """
     ways, sizes, modes = np.linalg.svd(changes[:, -impacts:], full_matrices=False)
-    kept = sizes > 1e-6 * sizes.max()
-    ways, sizes, modes = ways[:, kept], sizes[kept], modes[kept]
+    # Any two floors lie on a line.
+    count = max(impacts - 2, 0)
+    ways, sizes, modes = ways[:, :count], sizes[:count], modes[:count]
     apart = modes @ state[-impacts:]
     scatters = np.array([0.0, *np.geomspace(1e-9, 1.0, 200)])[:, None]
     expected = np.sum(apart**2 / (sizes**2 + scatters**2), axis=1) <= len(sizes)
@@ -165,7 +195,13 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
     reads = _READ * max(float(np.median(np.diff(np.unique(t)))), _SLOWEST_READ)
     n = len(y)
     count = len(middle)
-    columns = _GLOBALS + 2 * flight
+    places = np.column_stack(
+        [
+            *np.repeat([range(_GLOBALS)], n, axis=0).T,
+            _GLOBALS + 2 * flight,
+            _GLOBALS + 1 + 2 * flight,
+        ]
+    )
     precision = np.zeros(_GLOBALS + 2 * count)
     precision[1:_GLOBALS] = 1 / np.square([_BEND, _RECEDE, reads])
 
@@ -174,42 +210,19 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
     noise = 1.0
     # Gauss-Newton steps: the last ones move nothing any more.
     for _ in range(12):
-        gravity, bend, recede, read = found[:_GLOBALS]
-        start, slope = found[_GLOBALS:].reshape(-1, 2).T
-        at = since - read * y
-        by_drag = 0.0
-        if drag:
-            since_top = at - (slope / gravity)[flight]
-            by_drag = gravity * (since_top**2 / 2 - fall_of(since_top, drag)[0])
-        p = start[flight] + slope[flight] * at - gravity * at**2 / 2 + by_drag
-        depth = 1 + bend * p + recede * later
-        of_p = (1 + recede * later) / depth**2
-        of_globals = np.column_stack(
-            [
-                -of_p * at**2 / 2,
-                -((p / depth) ** 2),
-                -p * later / depth**2,
-                -of_p * (slope[flight] - gravity * at) * y,
-            ]
-        )
+        seen, derivatives = _seen(found, flight, since, later, y, drag)
         jacobian = sparse.csr_matrix(
-            (
-                np.column_stack([of_globals, of_p, of_p * at]).ravel(),
-                np.column_stack(
-                    [np.broadcast_to(np.arange(_GLOBALS), (n, _GLOBALS)), columns, columns + 1]
-                ).ravel(),
-                np.arange(n + 1) * (_GLOBALS + 2),
-            ),
+            (derivatives.ravel(), places.ravel(), np.arange(n + 1) * places.shape[1]),
             shape=(n, len(found)),
         )
-        left = y - p / depth
+        left = y - seen
         normal = (jacobian.T @ jacobian).toarray()
         inverse = np.linalg.inv(normal / noise**2 + np.diag(precision))
         move = inverse @ (jacobian.T @ left / noise**2 - precision * found)
         found = found + move
         used = len(found) - np.sum(np.diag(inverse) * precision)
         noise = math.sqrt(max(float(left @ left) / max(n - used, 1.0), 1e-18))
-        if not (noise < 1 and found[0] > 0):
+        if not (noise < math.inf and found[0] > 0):
             return unlike
     misfit = _misfit(flight, since, left, n - used)
     shared = np.flatnonzero(np.diff(after) == 1)

@@ -243,8 +243,8 @@ def _film_notes(found: Fit) -> list[str]:
             ),
             (
                 floor * KINK * moved > width / 4 and not found.recording.has_sideways,
-                f"the floor moves by {show(floor, 'm/s')} in the picture: if the picture is turned "
-                "and the ball drifts, a column x of its positions makes the interval narrower",
+                f"the floor moves by {show(floor, 'm/s')} in the picture: the interval allows for "
+                "a ball that drifts in a turned picture; a column x of its positions tells",
             ),
             (
                 is_single and moved * _DRIFT > width / 2,

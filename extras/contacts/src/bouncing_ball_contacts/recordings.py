@@ -123,11 +123,12 @@ class Recording:
 
     @property
     def films(self) -> list[tuple[Array, ...]]:
-        """Tracks of the impacts of each film, which begins with an earlier time."""
+        """Tracks of the impacts of each film; another film begins before the impact of the last."""
         if self.kind != "track":
             return []
-        begins = [track[0, 0] for track in self.chains]
-        ends = np.flatnonzero(np.diff(begins) < 0) + 1
+        begins = np.array([track[0, 0] for track in self.chains])
+        impacts = np.array([track[track[:, 2] == 0, 0].max() for track in self.chains])
+        ends = np.flatnonzero(begins[1:] < impacts[:-1]) + 1
         edges = itertools.pairwise([0, *ends, len(begins)])
         return [self.chains[begin:end] for begin, end in edges]
 

@@ -18,6 +18,12 @@ ifneq ($(words $(FOLDER)),1)
 $(error The path of Python has a space: move this folder, or make VENV=/another/path)
 endif
 
+# Snakemake's cache is in the home folder, which may be read-only.
+WRITABLE := [ -w "$$HOME/.cache" ] || [ ! -e "$$HOME/.cache" -a -w "$$HOME" ]
+ifeq ($(XDG_CACHE_HOME)$(shell $(WRITABLE) && echo yes),)
+export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
+endif
+
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
 .PHONY: all setup develop test test-processors lint diff replication accept newest lowest lock wheels release wheelhouse clean
@@ -92,29 +98,31 @@ wheels:
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' pyproject.toml)
 BUILD := import sys; from importlib import import_module; _, backend, folder = sys.argv; \
 	backend = import_module(backend); backend.build_wheel(folder); backend.build_sdist(folder)
-# What each archive has to stand alone.
-ABOUT := $(addprefix $(CURDIR)/,LICENSE CITATION.cff dist/bouncing-ball/README.txt)
+# What each archive has to stand alone: the files of the folder of its package, and what it is.
+ABOUT = $(addprefix $(CURDIR)/,$(1)LICENSE $(1)CITATION.cff dist/about/$(2)/README.txt)
 release: replication
 	$(MAKE) -C extras/beyond diff docs VENV=.venv
-	rm -rf dist/bouncing* dist/SHA256SUMS && mkdir -p dist/bouncing-ball
+	rm -rf dist/bouncing* dist/SHA256SUMS && mkdir -p dist/about/bouncing-ball dist/about/bouncing-ball-beyond
 	$(VENV)/bin/python -c '$(BUILD)' setuptools.build_meta dist
 	for package in beyond contacts; do \
 	  (cd extras/$$package && ../beyond/.venv/bin/python -c '$(BUILD)' flit_core.buildapi ../../dist) || exit 1; done
-	printf '%s\n' "Results of bouncing-ball $(VERSION), made by commit $$(git describe --always --dirty --abbrev=40 --exclude '*')" \
-	  "of its repository, which has all files that are named and are not here." > dist/bouncing-ball/README.txt
-	$(RUN) zipfile --create dist/bouncing-ball-$(VERSION)-results.zip results $(ABOUT)
+	for folder in dist/about/*; do \
+	  printf '%s\n' "Results of $${folder##*/} $(VERSION), made by commit $$(git describe --always --dirty --abbrev=40 --exclude '*')" \
+	    "of its repository, which has all files that are named and are not here." > $$folder/README.txt || exit 1; done
+	$(RUN) zipfile --create dist/bouncing-ball-$(VERSION)-results.zip results $(call ABOUT,,bouncing-ball)
 	cd extras/beyond/results && $(abspath $(VENV))/bin/python -m zipfile --create \
-	  $(CURDIR)/dist/bouncing-ball-beyond-$(VERSION)-results.zip figures records *.md $(ABOUT)
+	  $(CURDIR)/dist/bouncing-ball-beyond-$(VERSION)-results.zip figures records *.md $(call ABOUT,extras/beyond/,bouncing-ball-beyond)
 	cd extras/beyond/results && $(abspath $(VENV))/bin/python -m zipfile --create \
-	  $(CURDIR)/dist/bouncing-ball-$(VERSION)-site.zip site $(ABOUT)
-	rm -r dist/bouncing-ball
+	  $(CURDIR)/dist/bouncing-ball-$(VERSION)-site.zip site $(call ABOUT,,bouncing-ball)
+	rm -r dist/about
 	cd dist && sha256sum bouncing* > SHA256SUMS
 
 # The packages of the lock files, for a machine without an index: docs/on-a-cluster.md.
 wheelhouse: setup
 	$(RUN) pip --quiet --quiet --disable-pip-version-check download --require-hashes \
 	  --only-binary :all: --no-build-isolation --no-binary "$$(sh ./python.sh --builds $$(ls $(VENV)/lib))" --dest wheelhouse \
-	  --requirement requirements-build.lock --requirement requirements.lock
+	  --requirement requirements-build.lock --requirement requirements.lock \
+	  --requirement requirements-develop.lock
 
 clean:
 	rm -rf results .snakemake

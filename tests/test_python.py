@@ -1,5 +1,6 @@
 """python.sh: which Python the Makefiles take. .ci/wheels checks its list of builds."""
 
+import os
 import shutil
 import subprocess
 import tomllib
@@ -101,3 +102,16 @@ def test_the_versions_of_python_are_the_same_everywhere():
     workflow = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text("utf-8"))
     matrix = workflow["jobs"]["replication"]["strategy"]["matrix"]
     assert matrix["python"] == [named[0], named[-1]]
+
+
+def test_make_has_a_cache_for_snakemake_without_a_writable_home(tmp_path):
+    """`XDG_CACHE_HOME` of the user counts."""
+
+    def cache(**given):
+        command = ["make", "-s", "-C", str(ROOT), "--eval=cache: ; @echo $$XDG_CACHE_HOME", "cache"]
+        environment = {name: each for name, each in os.environ.items() if "XDG" not in name}
+        return subprocess.check_output(command, env=environment | given, text=True).strip()
+
+    assert cache(HOME="/dev/null/none") == f"{ROOT}/.snakemake/cache"
+    assert cache(HOME=str(tmp_path)) == ""
+    assert cache(HOME="/dev/null/none", XDG_CACHE_HOME="/mine") == "/mine"

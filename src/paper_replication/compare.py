@@ -1206,7 +1206,8 @@ def save_report(project: Project, report: Report, folder: Path, stream: TextIO) 
         write(
             page, report.printed("diff.html.j2", pictures=pictures, only=ONLY, back=back).encode()
         )
-        write(folder / "report.txt", f"{text}{page}\n".encode())
+        # Whoever gets the folder has it elsewhere.
+        write(folder / "report.txt", text.encode())
         print(f"{text}{page}", file=stream)
     except OSError as error:
         print(f"{text}The page cannot be written: {error}", file=stream)

@@ -185,10 +185,14 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     # A ball of table tennis does not fall faster than 8.6 m/s.
     lightest = STANDARD_GRAVITY / (2 * found.impacts.speed.max() ** 2)
     mass, diameter = (found.mass, found.diameter) if is_known else _TABLE_TENNIS_BALL
-    r_with, r_without = (
-        estimate(curves_of(impacts_of(recording, drag), known, found.speed, rounding)).of_r[0]
-        for drag in (min(drag_of(mass or 0.0, diameter or 0.0), lightest), 0.0)
-    )
+    try:
+        r_with, r_without = (
+            estimate(curves_of(impacts_of(recording, drag), known, found.speed, rounding)).of_r[0]
+            for drag in (min(drag_of(mass or 0.0, diameter or 0.0), lightest), 0.0)
+        )
+    except Refused:
+        # A film that no ball of table tennis has is one of a heavier ball.
+        return ""
     by_drag = r_with - r_without
     note = (
         f"the drag of the air is removed, which raises r by {by_drag:.2g}"

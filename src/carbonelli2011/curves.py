@@ -110,7 +110,7 @@ def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
 
 def number_ratios(axis: Axis, ratio: xr.DataArray) -> None:
     """Number a logarithmic axis of ϖ at powers of ten, and at each end that is far enough from
-    them; numbers from 10⁴ are wider, because they are powers of ten.
+    them. Beyond 10⁴ the axis has powers of ten, which are wider.
     """
     ends = np.array([ratio.min(), ratio.max()], dtype=float)
     low, high = np.log10(ends)
@@ -118,19 +118,15 @@ def number_ratios(axis: Axis, ratio: xr.DataArray) -> None:
     distance = np.abs(np.log10(ends)[:, np.newaxis] - powers).min(axis=1, initial=np.inf)
     alone = ends[distance > np.where(ends < 1e4, 0.1, 0.2) * (high - low)]
     axis.set_ticks(np.sort([*10**powers, *alone]))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: plain_number(value)))
+    powers_from = 1e4 if ends[1] > 1e4 else np.inf
+    axis.set_major_formatter(
+        FuncFormatter(
+            lambda value, _: (
+                f"${latex_number(value)}$" if value >= powers_from else f"{float(f'{value:.4g}'):g}"
+            )
+        )
+    )
     axis.set_minor_formatter(NullFormatter())
-
-
-def plain_number(value: float) -> str:
-    r"""Return a number with four digits, and in LaTeX if it is at least 10⁴.
-
-    Examples
-    --------
-    >>> plain_number(1000.0), plain_number(250000.0)
-    ('1000', '$2.5\\times10^{5}$')
-    """
-    return latex_number(value) if value < 1e4 else f"${latex_number(value)}$"
 
 
 def mark_look(kind: str) -> Look:

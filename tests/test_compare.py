@@ -454,7 +454,7 @@ def test_one_figure_is_compared_and_a_missing_one_is_named(project):
     # Rules make two pictures that nobody made.
     pictures = ("figures/fig18.png", "figures/fig18.svg")
     found = report(project, names=["fig18"], made=pictures)
-    assert ([*found.found], found.status) == ([*pictures], 2)
+    assert ([*found.findings], found.status) == ([*pictures], 2)
 
 
 @pytest.mark.parametrize("drawn", [True, False])
@@ -701,7 +701,7 @@ def test_a_text_with_another_title_has_no_sentences(project):
     path = project.top / "results/paper.md"
     path.write_text("another run\nis 83\n", "utf-8")
     note(project, "article", project.texts, "src/writing.py", ["fig14"], entries=ENTRIES)
-    found = report(project).found
+    found = report(project).findings
     assert found["paper.md"].sentences == []
     assert found["supplement.md"].sentences == [("is 82", "is 83")]
 

@@ -21,16 +21,15 @@ PARAMETERS = {
 @pytest.fixture
 def ends():
     """Table 1, whose first row is an end that rounds to the printed one, and one that does not."""
+    shape = ("frequency_ratio", "n", "bound")
+    unprinted = [[np.nan] * 2] * 3
     return xr.Dataset(
         {
-            "computed": (("frequency_ratio", "n", "bound"), [[[0.25471, 1.0383]]] * 3),
-            "printed": (
-                ("frequency_ratio", "n", "bound"),
-                [[[0.255, 1.032]], *[[[np.nan] * 2]] * 2],
-            ),
-            "admissible": (("frequency_ratio", "n", "bound"), [[[True, True]]] * 3),
+            "computed": (shape, [[[0.25471, 1.0383]] * 3] * 3),
+            "printed": (shape, [[[0.255, 1.032], *unprinted[1:]], unprinted, unprinted]),
+            "admissible": (shape, [[[True, True]] * 3] * 3),
         },
-        {"frequency_ratio": ROWS, "n": [1], "bound": BOUNDS},
+        {"frequency_ratio": ROWS, "n": PARAMETERS["n"], "bound": BOUNDS},
         {"parameters": json.dumps(PARAMETERS)},
     )
 

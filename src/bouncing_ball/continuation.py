@@ -156,12 +156,12 @@ def _solve(matrix: NDArray, values: NDArray) -> NDArray:
     rows = np.moveaxis(matrix, (0, 1), (-2, -1))
     columns = np.moveaxis(values, 0, -1)[..., np.newaxis]
     try:
-        found = np.linalg.solve(rows, columns)
+        steps = np.linalg.solve(rows, columns)
     except np.linalg.LinAlgError:
         singular = np.linalg.det(rows) == 0
         rows = np.where(singular[..., np.newaxis, np.newaxis], np.nan, rows)
-        found = np.linalg.solve(rows, columns)
-    return np.moveaxis(found[..., 0], -1, 0)
+        steps = np.linalg.solve(rows, columns)
+    return np.moveaxis(steps[..., 0], -1, 0)
 
 
 def stiff_guess(family: Family, x: Numbers, impact_height: Numbers) -> NDArray:
@@ -469,12 +469,12 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
         )
     path = path[:, ::-1]
     orbits = _equal_chords(family, path, points)
-    found = []
+    special = []
     for kind, test in _tests(family).items():
         for orbit in _zeros(family, path, test):
-            found.append(Special(kind, orbit, _place(orbit, orbits)))
+            special.append(Special(kind, orbit, _place(orbit, orbits)))
     ends = (end or reached, reached)
-    return Branch(orbits, sorted(found, key=lambda each: each.place), ends)
+    return Branch(orbits, sorted(special, key=lambda point: point.place), ends)
 
 
 SCANNED = 1000
@@ -635,7 +635,7 @@ def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) ->
     Each change of sign between two points of the path brackets one zero.
     """
     values = test(path)
-    found = []
+    orbits = []
     for i in np.flatnonzero(values[:-1] * values[1:] < 0):
         before = path[:, i]
         chord = path[:, i + 1] - before
@@ -644,8 +644,8 @@ def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) ->
             guess = before + part * chord
             return correct(family, guess, on_plane(guess, chord))
 
-        found.append(orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15)))
-    return found
+        orbits.append(orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15)))
+    return orbits
 
 
 def _place(orbit: NDArray, orbits: NDArray) -> float:

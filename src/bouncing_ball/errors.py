@@ -127,13 +127,13 @@ def threshold(ratios: NDArray, error: Error, tolerance: Numbers) -> Threshold:
     logarithms = np.log(ratios)
     ratio = np.full(last.shape, np.nan)
     if curve.size:
-        found = find_root(
+        crossing = find_root(
             lambda log, below, curve, most: error.between(np.exp(log), below, curve) - most,
             (logarithms[below], logarithms[below + 1]),
             args=(below, curve, allowed[column]),
             tolerances={"xatol": 1e-14, "xrtol": 0.0},
         )
-        ratio[is_crossed] = np.where(found.success, np.exp(found.x), np.nan)
+        ratio[is_crossed] = np.where(crossing.success, np.exp(crossing.x), np.nan)
     cases = [is_within, ~is_orbit & is_last, ~is_orbit, np.isfinite(ratio)]
     status = np.select(cases, ["within", "no orbit", "first orbit", "found"], "exceeded")
     shape = error.values.shape[:-1] + np.shape(tolerance)
@@ -145,8 +145,8 @@ def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Err
     """Relative error of the threshold of permanent contact along ϖ (Eq. 38)."""
 
     def error(ratio):
-        found = permanent_contact(ratio, zeta, release)
-        return relative_error(found, restitution.PERMANENT_CONTACT)
+        limit = permanent_contact(ratio, zeta, release)
+        return relative_error(limit, restitution.PERMANENT_CONTACT)
 
     return Error(error(ratios), lambda ratio, below, curve: error(ratio))
 
@@ -207,15 +207,15 @@ def bifurcation_errors(
         ),
     }
     family = Family(n, contact_of_ball(ratios, r, release))
-    found = {}
+    error_of = {}
     for name in names:
         kind, test, limit = kinds[name]
         orbits = bifurcations(n, kind, family.contact)[:, 0]
         admissible = family.admissible(orbits)
-        found[name] = _along(
+        error_of[name] = _along(
             family, orbits, at_bifurcation(test), admissible, lambda family, y: y[0], limit, limit
         )
-    return found
+    return error_of
 
 
 def _along(
@@ -410,11 +410,11 @@ def enough_from(
         contact = replace(family.contact, frequency_ratio=ratio, damping_ratio=zeta[orbit, 0])
         one = Family(n[orbit, 0], contact)
         at = amplitude[orbit, 0]
-        found = errors_of_orbits(one, correct(one, guess, at_amplitude(at)), r[orbit, 0], at)
-        return np.abs(found[quantity, np.arange(quantity.size)])
+        error = errors_of_orbits(one, correct(one, guess, at_amplitude(at)), r[orbit, 0], at)
+        return np.abs(error[quantity, np.arange(quantity.size)])
 
-    found = threshold(ratios, Error(values, between), tolerance)
-    return np.where(found.status == "within", ratios[0], found.ratio)
+    crossing = threshold(ratios, Error(values, between), tolerance)
+    return np.where(crossing.status == "within", ratios[0], crossing.ratio)
 
 
 def lowest_period_doublings(
@@ -444,9 +444,9 @@ def lowest_period_doublings(
             return float(correct(family, guess, at_bifurcation(Family.period_doubling_test))[0])
 
         around = np.log(ratios[[lowest - 1, lowest + 1]])
-        found = minimize_scalar(
+        turn = minimize_scalar(
             amplitude, bounds=tuple(around), method="bounded", options={"xatol": 1e-9}
         )
-        turns[k] = np.exp(found.x)
-        amplitudes[k] = found.fun
+        turns[k] = np.exp(turn.x)
+        amplitudes[k] = turn.fun
     return turns, amplitudes

@@ -212,10 +212,10 @@ def grazing_height(n: int, r: float) -> float:
     grid = 2 * np.pi * np.linspace(0, 1, 202)[1:-1]
     best = int(np.argmax(needed(grid)))
     bounds = (grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)])
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         lambda s: -needed(s), bounds=bounds, method="bounded", options={"xatol": 1e-12}
     )
-    return -found.fun
+    return -minimum.fun
 
 
 def admissible(n: int, r: float, impact_height: Numbers) -> NDArray[np.bool_]:

@@ -85,13 +85,13 @@ def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
     logarithm = np.log(coefficient(r))
     check_release(release)
     if release == "force":
-        found = find_root(
+        root = find_root(
             lambda zeta, logarithm: zeta * free_duration(zeta, release) + logarithm,
             (0.0, np.nextafter(1.0, 0.0)),
             args=(logarithm,),
             tolerances={"xatol": 1e-15},
         )
-        return np.where(found.success, found.x, np.nan)[()]
+        return np.where(root.success, root.x, np.nan)[()]
     # Subtract from 0.0, because a minus sign would give -0.0 for r = 1.
     return 0.0 - logarithm / np.hypot(np.pi, logarithm)
 

@@ -79,8 +79,8 @@ def verdicts(
         replace(claim, datasets={name: {} for name in claim.datasets})
         for claim in decided_by(names, table)
     ]
-    found = [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
-    return [(name, verdict.replace("not asked", "beyond the axis")) for name, verdict in found]
+    answers = [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
+    return [(name, verdict.replace("not asked", "beyond the axis")) for name, verdict in answers]
 
 
 def axis_of(name: str) -> str:
@@ -153,7 +153,7 @@ def exponents(data: Datasets) -> Iterator[Choice]:
     for exponent in EXPONENTS:
         ratios = [10.0**exponent, *compliant]
         other_table = printed.assign_coords(frequency_ratio=ratios)
-        others = {name: each.sel(frequency_ratio=ratios) for name, each in wide.items()}
+        others = {name: whole.sel(frequency_ratio=ratios) for name, whole in wide.items()}
         others["table1"]["printed"] = other_table.astype(float)
         table = {
             (10.0**exponent if ratio == max(TABLE_1)[0] else ratio, n): texts

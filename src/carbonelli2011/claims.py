@@ -96,7 +96,7 @@ def claim(
     """
 
     def add(decide: Callable) -> Callable:
-        needed = uses or {each: PARAMETERS.get(each, {}) for each in datasets.split()}
+        needed = uses or {dataset: PARAMETERS.get(dataset, {}) for dataset in datasets.split()}
         printed = PRINTED.get(name, "")
         shown = next(iter(needed), "") if beside is None else beside
         CLAIMS.append(Claim(name, place, text, needed, decide, printed, beside=shown, **more))
@@ -112,7 +112,7 @@ of Figs. 12 to 14 is one of Fig. 5."""
 
 def on_curves(asked: Callable[[xr.Dataset], ArrayLike], curves: Sequence[xr.Dataset]) -> NDArray:
     """Return the numbers that a sense asks of each dataset of `CURVES`, in one array."""
-    return np.concatenate([np.ravel(asked(each)) for each in curves])
+    return np.concatenate([np.ravel(asked(curve)) for curve in curves])
 
 
 # Abstract and introduction
@@ -187,8 +187,8 @@ def chaotic(balls: xr.Dataset) -> xr.DataArray:
     """
     wild = balls["impacts"] == 0
     exponent = balls["lyapunov_exponent"]
-    found = wild & (balls["stickings"] == 0) & (exponent > 5 * balls["lyapunov_error"])
-    return found.astype(float).where(~wild | exponent.notnull())
+    is_chaotic = wild & (balls["stickings"] == 0) & (exponent > 5 * balls["lyapunov_error"])
+    return is_chaotic.astype(float).where(~wild | exponent.notnull())
 
 
 @claim(
@@ -433,14 +433,14 @@ def static_table():
     "fig05 fig06",
 )
 def moving_table(fig05, fig06):
-    both = [abs(each["apparent_restitution"] / each["restitution"] - 1) for each in (fig05, fig06)]
+    both = [abs(data["apparent_restitution"] / data["restitution"] - 1) for data in (fig05, fig06)]
     curves = fig06.sel(frequency_ratio=10.0, method="nearest")
     r = float(curves["restitution"].max())
     at_rest = restitution_at_rest(r, float(curves["frequency_ratio"]))
     moved = abs(curves["apparent_restitution"] / at_rest - 1)
     name = "the largest relative difference of the apparent restitution from"
     return [
-        beyond_limit(f"{name} r", largest([largest(each) for each in both])),
+        beyond_limit(f"{name} r", largest([largest(error) for error in both])),
         beyond_limit(f"{name} that on a table at rest, at ϖ = 10", largest(moved)),
     ]
 
@@ -455,8 +455,8 @@ def moving_table(fig05, fig06):
 )
 def table_velocities(*figures):
     middles = [branch["phase"] + branch["contact_duration"] / 2 for branch in branches(*figures)]
-    signs = [np.sign(np.sin(each.values.ravel())) for each in middles]
-    equal = [np.abs(np.sign(np.diff(each))).sum() for each in signs]
+    signs = [np.sign(np.sin(phases.values.ravel())) for phases in middles]
+    equal = [np.abs(np.sign(np.diff(curve))).sum() for curve in signs]
     return [
         at_most("every orbit, in orbits with equal velocities", sum(equal), 0),
         at_most("all orbits of a branch but one", equal, 1),
@@ -539,10 +539,10 @@ def compliant_end(fig06):
 def negligible_above_100(*sweeps):
     stiff = [sweep.sel(frequency_ratio=STIFF_CONTACTS) for sweep in sweeps]
     off = [abs(part["apparent_restitution"] - part["restitution"]) for part in stiff]
-    shares = [each / each["restitution"] for each in off]
+    shares = [part / part["restitution"] for part in off]
     return [
-        within_limit("the difference", [largest(each) for each in off]),
-        within_limit("the difference as a share of r", [largest(each) for each in shares]),
+        within_limit("the difference", [largest(part) for part in off]),
+        within_limit("the difference as a share of r", [largest(part) for part in shares]),
     ]
 
 

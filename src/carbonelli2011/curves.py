@@ -95,8 +95,8 @@ def parted(values: Mapping[str, Iterable[float]]) -> tuple[str, list[str]]:
     common = {name: column[0] for name, column in lists.items() if len(set(column)) == 1}
     rest = {name: column for name, column in lists.items() if name not in common}
     count = max(len(column) for column in lists.values())
-    each = [label(**{name: column[k] for name, column in rest.items()}) for k in range(count)]
-    return label(**common), each
+    labels = [label(**{name: column[k] for name, column in rest.items()}) for k in range(count)]
+    return label(**common), labels
 
 
 def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:

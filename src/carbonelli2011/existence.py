@@ -47,8 +47,8 @@ def without_orbit(config: Mapping) -> Iterator[str]:
             entry = config[stage][name]
             amplitudes = entry.get("amplitude", entry.get("amplitude_max", []))
             listed = amplitudes if isinstance(amplitudes, list) else [amplitudes]
-            cases = [entry | {"amplitude": each} for each in listed] + entry.get("cases", [])
-            lowest = [stable_range(entry["n"], each["restitution"])[0] for each in cases]
+            cases = [entry | {"amplitude": size} for size in listed] + entry.get("cases", [])
+            lowest = [stable_range(entry["n"], case["restitution"])[0] for case in cases]
             if (
                 all(case["amplitude"] < low for case, low in zip(cases, lowest, strict=True))
                 and cases

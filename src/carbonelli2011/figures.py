@@ -324,10 +324,10 @@ def fig13(data: xr.Dataset) -> Figure:
     entries |= {kind: sample(**look_of(kind)) for kind in others}
     legend_below(figure, entries, columns=1 if len(entries) <= LEGEND_ROWS else 2)
     figure.draw_without_rendering()
-    known = [each for each in labels if np.isfinite(each[1]).all()]
+    known = [entry for entry in labels if np.isfinite(entry[1]).all()]
     # The ends of the curves come first.
-    known.sort(key=lambda each: each[0] not in (LABELLED[0], LABELLED[-1]))
-    name_points(axes, [(label(frequency_ratio=each), *where) for each, *where in known])
+    known.sort(key=lambda entry: entry[0] not in (LABELLED[0], LABELLED[-1]))
+    name_points(axes, [(label(frequency_ratio=ratio), *where) for ratio, *where in known])
     return figure
 
 
@@ -606,7 +606,7 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
     `shown` lists the branches of each panel. The title names branches without orbits.
     """
     absent = [name for panel in shown for name, branch, _ in panel if not has_orbits(branch)]
-    present = [[each for each in panel if has_orbits(each[1])] for panel in shown]
+    present = [[named for named in panel if has_orbits(named[1])] for panel in shown]
     present = [panel for panel in present if panel]
     figure, grid = panels(height, rows=len(present), sharex=True, squeeze=False)
     column = grid[:, 0]
@@ -904,10 +904,10 @@ def draw(name: str, *data: xr.Dataset, own: Mapping[str, Any] | None = None) -> 
     fig01 and fig04 need no dataset. Of matplotlib's settings only those of `own` count, as in
     `drawing.style`, which says what it raises. Raises Empty if the dataset has no orbit.
     """
-    for each in data:
-        orbits = each.get("phase", each.get("ball"))
+    for dataset in data:
+        orbits = dataset.get("phase", dataset.get("ball"))
         if orbits is not None and orbits.isnull().all():
-            raise Empty(f"{name} would be empty: {without_orbit(each)}")
+            raise Empty(f"{name} would be empty: {without_orbit(dataset)}")
     with style(own):
         return FIGURES[name](*data)
 

@@ -29,7 +29,7 @@ def pages(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = False
     marked = {name: article.text(name, datasets) for name in ("paper", "supplement")}
     origin = {name: article.origins_of(name, datasets) for name in marked}
     evidence = list_of_figures("html", datasets, entries, name="claims", site=site)
-    found = {
+    texts_by_name = {
         "figures/README.md": list_of_figures("md", datasets, entries),
         "index.html": list_of_figures("html", datasets, entries, site=site),
         "claims.html": framed(evidence, "claims", [("", "The claims and the evidence")]),
@@ -38,9 +38,9 @@ def pages(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = False
         ),
     }
     for name, text in marked.items():
-        found[f"{name}.md"] = bare(text)
-        found[f"{name}.html"] = page_of(text, name, origin[name])
-    return found
+        texts_by_name[f"{name}.md"] = bare(text)
+        texts_by_name[f"{name}.html"] = page_of(text, name, origin[name])
+    return texts_by_name
 
 
 def list_of_figures(
@@ -117,9 +117,9 @@ def shifts(validity_map: xr.Dataset) -> list[list[str]]:
         "below": ("has stable orbits, the restitution model none", "below the saddle-node"),
         "doubled": ("has already doubled its period", "next to the period doubling"),
     }
-    for name, (found, side) in ends.items():
+    for name, (kind, side) in ends.items():
         where = positive(validity_map[f"{name}_share"], side)
-        rows.append([found, where, *map(texts.share_text, validity_map[f"{name}_mean"].values)])
+        rows.append([kind, where, *map(texts.share_text, validity_map[f"{name}_mean"].values)])
     return rows
 
 

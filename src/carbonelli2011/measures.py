@@ -62,8 +62,8 @@ def last_special(branch: xr.Dataset, kind: str) -> float:
     The range of Table 1 lies at the end of a branch, on the stable side of its last saddle-node.
     NaN if the branch has no such point.
     """
-    found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
-    return float(found[-1]) if found.size else np.nan
+    amplitudes = branch["special_amplitude"].values[branch["special_kind"].values == kind]
+    return float(amplitudes[-1]) if amplitudes.size else np.nan
 
 
 def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
@@ -125,13 +125,13 @@ def stiff_errors(*sweeps: xr.Dataset) -> xr.DataArray:
 
     `sweeps` are the datasets of Figs. 5, 6 and 10. An orbit of two figures is listed once.
     """
-    found = []
+    errors = []
     for sweep in sweeps:
         stiff = abs(curve_errors(sweep).sel(frequency_ratio=STIFF_CONTACTS))
         orbits = [f"n = {parameters(sweep)['n']}, {case}" for case in sweep["case"].values]
         worst = stiff.max("frequency_ratio", skipna=False)
-        found.append(worst.assign_coords(case=orbits).rename(case="orbit"))
-    return xr.concat(found, "orbit").drop_duplicates("orbit")
+        errors.append(worst.assign_coords(case=orbits).rename(case="orbit"))
+    return xr.concat(errors, "orbit").drop_duplicates("orbit")
 
 
 def departure(sweep: xr.Dataset) -> xr.DataArray:

@@ -58,7 +58,7 @@ def end_of_range(ratio: float, n: int, bound: str) -> str:
 
 def printed_table() -> xr.DataArray:
     """Return Table 1 as texts, over frequency_ratio, n and bound; `astype(float)` gives numbers."""
-    ratios, families = (list(dict.fromkeys(each)) for each in zip(*TABLE_1, strict=True))
+    ratios, families = (list(dict.fromkeys(column)) for column in zip(*TABLE_1, strict=True))
     shape = (len(ratios), len(families), len(BOUNDS))
     return xr.DataArray(
         np.reshape(list(TABLE_1.values()), shape),
@@ -137,7 +137,7 @@ PARAMETERS: dict[str, dict] = {
         restitution=0.65,
         amplitude=1.0,
         # The map has two quantities of its own.
-        quantities=Among("quantity", [each for each in QUANTITIES if each != "summit"]),
+        quantities=Among("quantity", [quantity for quantity in QUANTITIES if quantity != "summit"]),
         frequency_ratio={"min": 1.0, "max": 1e4},
     ),
     "lowest_doubling": on_contacts(n=[1, 2, 3], restitution=0.85),
@@ -170,19 +170,19 @@ def changed_parameters(datasets: Datasets) -> list[str]:
 
     A line begins with the names of the datasets that have the parameter.
     """
-    found: dict[str, list[str]] = {}
+    names_by_line: dict[str, list[str]] = {}
     for name, needed in sorted(
         [*PARAMETERS.items(), *TOLERANCES.items(), *AXES.items()], key=itemgetter(0)
     ):
         for line in others(name, parameters(datasets[name]), needed):
-            found.setdefault(line.removeprefix(f"{name}."), []).append(name)
-    return [f"{', '.join(dict.fromkeys(names))}: {line}" for line, names in found.items()]
+            names_by_line.setdefault(line.removeprefix(f"{name}."), []).append(name)
+    return [f"{', '.join(dict.fromkeys(names))}: {line}" for line, names in names_by_line.items()]
 
 
 def of_paper(datasets: Datasets) -> dict[str, xr.Dataset]:
     """Select the curves and rows of the paper, in its order, in the datasets that have them."""
-    found = {}
+    chosen = {}
     for name, data in datasets.items():
         needed = PARAMETERS.get(name, {}) | TOLERANCES.get(name, {})
-        found[name] = data if other_parameters(name, data, needed) else selected(data, needed)
-    return found
+        chosen[name] = data if other_parameters(name, data, needed) else selected(data, needed)
+    return chosen

@@ -10,7 +10,7 @@ from carbonelli2011.claims import table1_ends
 from carbonelli2011.paper import QUANTITIES, end_of_range
 from paper_replication.datasets import parameters
 from paper_replication.judgements import computed_text, distance_text
-from paper_replication.texts import each, number
+from paper_replication.texts import number, parts_along
 from paper_replication.verdicts import answer
 
 NOT_FOLLOWED = ", which no ball follows"
@@ -29,7 +29,7 @@ def table1(data: xr.Dataset) -> list[list[str]]:
     """
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
     ends = {claim.name: claim for claim in table1_ends()}
-    for end in each(data, "frequency_ratio", "n", "bound"):
+    for end in parts_along(data, "frequency_ratio", "n", "bound"):
         ratio, n, bound = (end[name].item() for name in ("frequency_ratio", "n", "bound"))
         printed = number(end["printed"], ".3f", "")
         claim = ends.get(end_of_range(ratio, n, bound)) if printed else None
@@ -61,7 +61,7 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     orbit = f"n = {given['n']}, r = {given['restitution']:g}, Λ = {given['amplitude']:g}"
     tolerances = [f"{100 * tolerance:g} %" for tolerance in data["tolerance"].values]
     rows = [[f"error of an orbit with {orbit}, relative; of the phase in periods", *tolerances]]
-    for line in each(data, "quantity"):
+    for line in parts_along(data, "quantity"):
         status = line["threshold_status"].values.tolist()
         ratios = line["error_threshold"].values
         entries = []
@@ -89,26 +89,26 @@ def hypotheses(data: xr.Dataset) -> list[list[str]]:
     - the other numbers, each with its distance in these units.
     """
     row = data["row"].values
-    rows = list(dict.fromkeys(row[np.isfinite(row)]))
+    ratios = list(dict.fromkeys(row[np.isfinite(row)]))
     single = data["number"].values[np.isnan(row)]
     printed = data["printed_text"].sel(number=single).values.tolist()
-    heads = [f"Table 1, ϖ = {ratio:g}" for ratio in rows]
+    heads = [f"Table 1, ϖ = {ratio:g}" for ratio in ratios]
     names = [f"{name}, printed {text}" for name, text in zip(single, printed, strict=True)]
     mean = "root mean square distance, compliant rows"
-    found = [["hypothesis", *heads, mean, *names, "reproduced"]]
-    for line in each(data, "hypothesis"):
+    rows = [["hypothesis", *heads, mean, *names, "reproduced"]]
+    for line in parts_along(data, "hypothesis"):
         agrees = line["agrees"].values
-        ends = [agrees[row == ratio] for ratio in rows]
+        ends = [agrees[row == ratio] for ratio in ratios]
         others = line[["found", "deviation_units"]].sel(number=single)
         numbers = []
-        for text, one in zip(printed, each(others, "number"), strict=True):
+        for text, one in zip(printed, parts_along(others, "number"), strict=True):
             value = computed_text(float(one["found"]), text)
             units = number(one["deviation_units"], "+.2f")
             numbers.append(value if value == units else f"{value} ({units})")
         cells = [f"{hits.sum()} of {hits.size}" for hits in ends]
         cells += [number(line["rms_difference"], ".2f"), *numbers]
-        found.append([line["hypothesis"].item(), *cells, f"{agrees.sum()} of {agrees.size}"])
-    return found
+        rows.append([line["hypothesis"].item(), *cells, f"{agrees.sum()} of {agrees.size}"])
+    return rows
 
 
 TABLES = {"table1": table1, "thresholds": thresholds, "hypotheses": hypotheses}

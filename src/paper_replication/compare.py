@@ -226,18 +226,18 @@ class Checkout:
         if name:
             settings = {key: self.config[key] for key in recorded.keys() & self.config.keys()}
             entry = now.get(name, {})
-            now = settings | {key: each for key, each in entry.items() if key not in SHOWN_BY}
+            now = settings | {key: value for key, value in entry.items() if key not in SHOWN_BY}
         lines = changes(recorded, plain(now))
         return [f"{line} (config/config.yaml or the Snakefile)" for line in lines]
 
     def other_attributes(self, name: str, data: xr.Dataset) -> list[str]:
         """Attributes that a dataset and its variables would get today."""
         described = self.project.describe(name)
-        variables = {str(key): each for key, each in data.variables.items() if key in described}
+        variables = {str(key): one for key, one in data.variables.items() if key in described}
         now: dict[str, Any] = {**common_attributes(self.project)}
-        then = {key: each for key, each in data.attrs.items() if key in now}
-        now |= {key: attributes(described[key], each.dtype) for key, each in variables.items()}
-        then |= {key: each.attrs for key, each in variables.items()}
+        then = {key: value for key, value in data.attrs.items() if key in now}
+        now |= {key: attributes(described[key], one.dtype) for key, one in variables.items()}
+        then |= {key: one.attrs for key, one in variables.items()}
         return changes(plain(then), plain(now))
 
     def other_code(self, recorded: Mapping[str, str]) -> list[str]:
@@ -302,7 +302,7 @@ def side(run: Run, file: str, checkout: Checkout | None = None) -> Side:
         EDITED: [f"{file} of {run.label}"] if record["made"].get(file, made) != made else [],
         STALE: stale,
     }
-    wrong = {kind: each for kind, each in checked.items() if each}
+    wrong = {kind: details for kind, details in checked.items() if details}
     return Side(path, wrong, data, made, record, run.uses(file, made))
 
 
@@ -364,7 +364,7 @@ class Difference(NamedTuple):
 def differences(name: str, old: Any, new: Any) -> list[Difference]:
     """What differs in the contents of a file, which are those of `content_of`."""
     if isinstance(old, xr.Dataset):
-        described = [Difference(*each) for each in changed(about(old), about(new))]
+        described = [Difference(*difference) for difference in changed(about(old), about(new))]
         sizes, *both = aligned(old, new)
         return described + sizes + values_that_differ(*both)
     if old is None:
@@ -381,13 +381,13 @@ def changes(old: Mapping, new: Mapping) -> list[str]:
     >>> changes({"grid": {"max": 10.0}, "n": [1, 2]}, {"grid": {"max": 20.0}, "n": [1, 2, 3]})
     ['grid.max 10.0 → 20.0', 'n 3 is new']
     """
-    return [" ".join(each) for each in changed(old, new)]
+    return [" ".join(difference) for difference in changed(old, new)]
 
 
 def changed(old: Mapping, new: Mapping, above: str = "") -> Iterator[tuple[str, str]]:
     """Yield what differs between two mappings: the key and the change."""
     for key in sorted({*old, *new}):
-        before, after = (each.get(key, "absent") for each in (old, new))
+        before, after = (mapping.get(key, "absent") for mapping in (old, new))
         nested = [isinstance(value, Mapping) for value in (before, after)]
         if all(nested):
             yield from changed(before, after, f"{above}{key}.")
@@ -445,7 +445,7 @@ def along(data: xr.Dataset, dim: str) -> list[str]:
     """The names of the coordinates that tell the values along a dimension apart: its own, or all
     others, or else the dimension, whose values are positions.
     """
-    others = [str(name) for name, each in data.coords.items() if each.dims == (dim,)]
+    others = [str(name) for name, coordinate in data.coords.items() if coordinate.dims == (dim,)]
     return [dim] if dim in data.coords else others or [dim]
 
 
@@ -459,14 +459,14 @@ def aligned(old: xr.Dataset, new: xr.Dataset) -> tuple[list[Difference], xr.Data
     >>> [str(each) for one, other in ((old, new), (new, old)) for each in aligned(one, other)[0]]
     ['claim low is new', 'claim low is missing']
     """
-    found = []
+    differing = []
     for dim in sorted({*map(str, old.dims)} & {*map(str, new.dims)}):
         is_as_long = old.sizes[dim] == new.sizes[dim]
         if is_as_long and old[dim].dtype.kind not in "UO":
             continue
         same = np.ones((old.sizes[dim], new.sizes[dim]), bool)
         for name in {*along(old, dim)} & {*along(new, dim)}:
-            y, x = (each[name].values for each in (old, new))
+            y, x = (data[name].values for data in (old, new))
             same &= far(x[None, :], y[:, None], old[name].attrs) <= 1
         # Of several equal coordinates, the first of both belong together.
         same &= np.cumsum(same, 0) == np.cumsum(same, 1)
@@ -474,13 +474,13 @@ def aligned(old: xr.Dataset, new: xr.Dataset) -> tuple[list[Difference], xr.Data
         if is_as_long and all(map(np.all, kept)):
             continue
         only = [
-            [text.removeprefix(f"{dim} = ") for text in np.array(labels(each, dim))[~both]]
-            for each, both in zip((old, new), kept, strict=True)
+            [text.removeprefix(f"{dim} = ") for text in np.array(labels(data, dim))[~both]]
+            for data, both in zip((old, new), kept, strict=True)
         ]
-        found.append(Difference(dim, elements(*only)))
+        differing.append(Difference(dim, elements(*only)))
         places = np.nonzero(same)
-        old, new = (each.isel({dim: place}) for each, place in zip((old, new), places, strict=True))
-    return found, old, new
+        old, new = (data.isel({dim: place}) for data, place in zip((old, new), places, strict=True))
+    return differing, old, new
 
 
 def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[Difference]:
@@ -490,8 +490,8 @@ def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[Difference]:
     """
     distances = {
         str(name): distance(str(name), old, new)
-        for name, each in old.variables.items()
-        if name in new.variables and each.dims == new[name].dims
+        for name, variable in old.variables.items()
+        if name in new.variables and variable.dims == new[name].dims
     }
     ordered = sorted(
         (name for name, far in distances.items() if (far > 1).any()),
@@ -718,7 +718,7 @@ def rounded(old: Side, new: Side, checkout: Checkout | None) -> bool:
     """Whether files differ only because numbers of their dataset, which agree, are rounded
     differently: the same code made both files, or today's code makes that of the reference again.
     """
-    data, other = (each.path.with_name(f"{new.shows}.nc") for each in (old, new))
+    data, other = (one.path.with_name(f"{new.shows}.nc") for one in (old, new))
     if not data.is_file() or read(data).equals(read(other)):
         return False
     if checkout is None:
@@ -735,7 +735,7 @@ def remade(make: Callable, name: str, path: Path, _made: str) -> dict[str, str]:
             make(name, read(path), Path(folder))
         except OSError as error:
             raise OSError(f"{folder}, TMPDIR names another folder: {error}") from error
-        return {each.name: content(each) for each in Path(folder).iterdir()}
+        return {path.name: content(path) for path in Path(folder).iterdir()}
 
 
 def what_differs(
@@ -752,9 +752,9 @@ def what_differs(
         code = code | contents_in(checkout.project.checkout, checkout.project.described_in)
     main = checkout.main if checkout else {}
     marks = {file: " (also on main)" * (main.get(file) == code[file]) for file in code}
-    parameters = [each.record["parameters"] for each in (old, new)]
-    versions = [{key: each.record["versions"].get(key) for key in PACKAGES} for each in (old, new)]
-    found = {
+    parameters = [one.record["parameters"] for one in (old, new)]
+    versions = [{key: one.record["versions"].get(key) for key in PACKAGES} for one in (old, new)]
+    causes = {
         "follows from": [Path(file).stem for file in new.record["data"] if file in differing],
         "changed parameter": changes(parameters[0], parameters[1]) if all(parameters) else [],
         "changed code": [
@@ -762,7 +762,7 @@ def what_differs(
         ],
         "other versions": changes(versions[0], versions[1]),
     }
-    return {kind: details for kind, details in found.items() if details} or SAME
+    return {kind: details for kind, details in causes.items() if details} or SAME
 
 
 # All files
@@ -775,17 +775,17 @@ class Report:
     old: Run
     new: Run
     sides: Mapping[str, tuple[Side, Side]]
-    found: Mapping[str, Finding]
+    findings: Mapping[str, Finding]
 
     def those(self, *verdicts: str) -> dict[str, Finding]:
         """The files with one of these verdicts."""
-        return {file: each for file, each in self.found.items() if each.verdict in verdicts}
+        return {file: one for file, one in self.findings.items() if one.verdict in verdicts}
 
     @property
     def status(self) -> int:
         """The exit status: 1 if a file differs, else 2 if one is not comparable or none exists."""
-        found = {STATUS[each.verdict] for each in self.found.values()}
-        return 1 if 1 in found else max(found, default=2)
+        statuses = {STATUS[finding.verdict] for finding in self.findings.values()}
+        return 1 if 1 in statuses else max(statuses, default=2)
 
     def names(self, verdict: str) -> list[str]:
         """The figures, tables and texts with a verdict."""
@@ -793,16 +793,16 @@ class Report:
 
     def lines(self) -> list[str]:
         """What is wrong, by name. Both pictures of a figure have the same line."""
-        found = self.those("differs", "not comparable").items()
-        blocks = dict.fromkeys(each.lines(Path(file).stem) for file, each in found)
+        files = self.those("differs", "not comparable").items()
+        blocks = dict.fromkeys(finding.lines(Path(file).stem) for file, finding in files)
         return [*chain.from_iterable(blocks), *self.missing()]
 
     def shown(self) -> dict[str, dict[str, Finding]]:
         """The files that the page shows, by name, datasets first."""
         by_name: dict[str, dict[str, Finding]] = {}
-        for file, each in self.those(*ON_PAGE).items():
-            if each.causes or each.sentences or file.endswith(".png"):
-                by_name.setdefault(Path(file).stem, {})[file] = each
+        for file, finding in self.those(*ON_PAGE).items():
+            if finding.causes or finding.sentences or file.endswith(".png"):
+                by_name.setdefault(Path(file).stem, {})[file] = finding
         return by_name
 
     def missing(self) -> list[str]:
@@ -858,14 +858,14 @@ def compare(
     order = sorted(
         sides,
         key=lambda file: (
-            any(MISSING in each.wrong for each in sides[file]),
+            any(MISSING in one.wrong for one in sides[file]),
             file not in datasets,
             bool(sides[file][1].record["data"]),
             file,
         ),
     )
-    found = {file: finding(*sides[file], checkout, differing) for file in order}
-    return Report(old, new, sides, found)
+    findings = {file: finding(*sides[file], checkout, differing) for file in order}
+    return Report(old, new, sides, findings)
 
 
 def obstacles(project: Project, report: Report, checkout: Checkout | None) -> Iterator[str]:
@@ -877,7 +877,7 @@ def obstacles(project: Project, report: Report, checkout: Checkout | None) -> It
         way = f"`git checkout HEAD -- {files}`, commit, and accept the results of the merge"
         yield f"{ACCEPTED} {CONFLICT}: {way}"
     old, new = report.old, report.new
-    is_copy = old.records == new.records and all(each["made_at"] for each in new.records.values())
+    is_copy = old.records == new.records and all(job["made_at"] for job in new.records.values())
     if old.folder.resolve() == new.folder.resolve() or (new.records and is_copy):
         yield f"{old.label} and {new.label} are the same run"
     if checkout and checkout.config is not None:
@@ -956,9 +956,11 @@ def planned(project: Project, results: Path, inputs: Iterable[str]) -> Plan:
     )
     for reason in refusals(project, report, made, committed):
         raise ValueError(f"nothing is accepted, {reason}")
-    accepted = {file: report.sides[file] for file in report.found if file in made}
+    accepted = {file: report.sides[file] for file in report.findings if file in made}
     changed = {
-        new.shows for file, (_, new) in accepted.items() if report.found[file].verdict != "agrees"
+        new.shows
+        for file, (_, new) in accepted.items()
+        if report.findings[file].verdict != "agrees"
     }
     after = {
         file: new.hash
@@ -1021,16 +1023,16 @@ def states(
     head = tree(project.top, "HEAD")
     before = contents_in(project.top, files)
     lost = []
-    for file, found in before.items():
+    for file, git_hash in before.items():
         recorded = report.old.records.get(file, {}).get("made", {}).get(file)
-        if found not in {head.get(file), recorded, after.get(file), *interrupted.get(file, [])}:
+        if git_hash not in {head.get(file), recorded, after.get(file), *interrupted.get(file, [])}:
             lost.append(file)
     if edited := " ".join(file for file in lost if file in head):
         stash = f"move the edit to a template, or keep it by `git stash -- {edited}`"
         raise ValueError(f"nothing is accepted, edited by hand: {edited}: {stash}")
     if lost:
         raise ValueError(f"nothing is accepted, not made by a rule, move it: {' '.join(lost)}")
-    now = {file: [each[file] for each in (before, after) if file in each] for file in files}
+    now = {file: [hashes[file] for hashes in (before, after) if file in hashes] for file in files}
     return interrupted | now
 
 
@@ -1057,7 +1059,7 @@ def refusals(
     datasets = [data for data in contents if isinstance(data, xr.Dataset)]
     if slips := [line for data in datasets for line in raised(data)]:
         yield f"correct first: {'; '.join(slips)}"
-    records = [report.new.records[file] for file in report.found if file in made]
+    records = [report.new.records[file] for file in report.findings if file in made]
     if unknown := {file for record in records for file in record["code"]} - committed.keys():
         yield f"commit first: git does not know {min(unknown)}"
     yield from other_versions(report)
@@ -1082,7 +1084,7 @@ def results_of(project: Project, path: Path, unpacked: Path) -> Path:
         if (folder / "figures").is_dir() and not (folder / ACCEPTED).exists():
             return folder
     inner = [*top.glob("*.zip"), *(folder.parent for folder in top.glob("*/**/records"))]
-    names = ", ".join(sorted(each.relative_to(top).as_posix() for each in inner))
+    names = ", ".join(sorted(folder.relative_to(top).as_posix() for folder in inner))
     has = f", but it has {names}{': unpack it first' if path.is_file() else ''}" if names else ""
     raise ValueError(f"{path} has no results of a run{has}")
 
@@ -1125,10 +1127,10 @@ def main(project: Project, arguments: list[str]) -> int:
         checkout = Checkout(project, main_branch(project.checkout), config if is_own else None)
         judged_by = checkout if len(runs) == 1 else None
         report = compare(project, old, new, judged_by, names)
-        if unknown := {*names} - {Path(file).stem for file in report.found}:
+        if unknown := {*names} - {Path(file).stem for file in report.findings}:
             parser.error(f"{', '.join(sorted(unknown))}: neither a run nor a name in {old.label}")
-        if found := [*obstacles(project, report, judged_by)]:
-            parser.error("; ".join(found))
+        if lines := [*obstacles(project, report, judged_by)]:
+            parser.error("; ".join(lines))
         # No file of somebody else lies there.
         is_zip = paths[-1].is_file()
         folder = paths[-1].with_suffix(".diff") if is_zip else folders[-1] / "diff"
@@ -1149,8 +1151,8 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
         checkout,
         snakemake.params.names,
     )
-    if found := [*obstacles(project, report, checkout)]:
-        print(*found, sep="\n", file=sys.stderr)
+    if lines := [*obstacles(project, report, checkout)]:
+        print(*lines, sep="\n", file=sys.stderr)
         return STATUS["not comparable"]
     stream = sys.stderr if report.status else sys.stdout
     return save_report(project, report, results / "diff", stream)
@@ -1162,7 +1164,7 @@ def drawn(project: Project, report: Report, file: str) -> list[bytes]:
     """
     paths = [side.path for side in report.sides[file]]
     pictures = [path.read_bytes() for path in paths if path.is_file()]
-    if report.found[file].verdict == "follows":
+    if report.findings[file].verdict == "follows":
         with suppress(Exception):  # Whatever reading and drawing a dataset of other code raises.
             shown = report.sides[file][1].shows
             data = [read(path.with_name(f"{shown}.nc")) for path in paths]
@@ -1177,8 +1179,8 @@ def over_each_other(pictures: Sequence[bytes]) -> list[bytes]:
     only the second one draws the second colour.
     """
     with suppress(Exception):  # Whatever readers raise for a damaged picture.
-        images = [Image.open(BytesIO(each)).convert("RGB") for each in pictures]
-        first, second = np.stack([np.asarray(each, float) for each in images])
+        images = [Image.open(BytesIO(picture)).convert("RGB") for picture in pictures]
+        first, second = np.stack([np.asarray(image, float) for image in images])
         shown = 255 - 0.3 * (255 - np.maximum(first, second)).max(-1, keepdims=True)
         for gone, colour in zip((second - first, first - second), ONLY, strict=True):
             share = np.clip(gone / 255, 0, 1).max(-1, keepdims=True)
@@ -1195,7 +1197,7 @@ def save_report(project: Project, report: Report, folder: Path, stream: TextIO) 
     Returns the exit status.
     """
     pictures = {
-        Path(file).stem: [base64.b64encode(each).decode() for each in drawn(project, report, file)]
+        Path(file).stem: [base64.b64encode(png).decode() for png in drawn(project, report, file)]
         for file in report.those(*ON_PAGE)
         if file.endswith(".png")
     }

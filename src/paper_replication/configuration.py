@@ -24,12 +24,12 @@ def checked(config: Mapping, schema_file: Path, files: Iterable[str]) -> dict:
     A mistake ends the program, with a line for each.
     """
     schema = yaml.safe_load(schema_file.read_text("utf-8"))
-    found = [
+    lines = [
         f"{Path(file).name}, {line}"
         for file in files
         for line in mistakes_in_text(Path(file).read_text("utf-8"))
     ]
-    stop(found or mistakes(config, schema))
+    stop(lines or mistakes(config, schema))
     return with_whole_numbers(config, schema, schema["$defs"])
 
 
@@ -119,7 +119,7 @@ def stages(config: Mapping) -> dict[str, Mapping]:
 
 def entries(config: Mapping) -> dict[str, Mapping]:
     """Return the figures, tables and datasets of all stages, by name."""
-    return {name: each[name] for each in stages(config).values() for name in names(each)}
+    return {name: section[name] for section in stages(config).values() for name in names(section)}
 
 
 SHOWN_BY = ("caption", "table")
@@ -167,13 +167,13 @@ def named(config: Mapping, targets: Iterable[str]) -> list[str]:
     the `data` of another entry, which is compared, too.
     """
     known = entries(config)
-    found: set[str] = set()
+    asked: set[str] = set()
     sections = stages(config)
     for target in {*targets} - {"diff"}:
-        found.update(names(sections[target]) if target in sections else [Path(target).stem])
-    if not found <= known.keys():
+        asked.update(names(sections[target]) if target in sections else [Path(target).stem])
+    if not asked <= known.keys():
         return []
-    return sorted(found.union(known[name].get("data", name) for name in found))
+    return sorted(asked.union(known[name].get("data", name) for name in asked))
 
 
 def without_function(top: Path, needed: Mapping[str, Iterable[str]]) -> Iterator[str]:
@@ -222,13 +222,13 @@ def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:
     if isinstance(value, Mapping):
         inner = schema.get("properties", {})
         return {
-            key: with_whole_numbers(each, inner.get(key, {}), known) for key, each in value.items()
+            key: with_whole_numbers(part, inner.get(key, {}), known) for key, part in value.items()
         }
     if isinstance(value, list):
         schemas = chain(schema.get("prefixItems", []), repeat(schema.get("items", {})))
         return [
-            with_whole_numbers(each, inner, known)
-            for each, inner in zip(value, schemas, strict=False)
+            with_whole_numbers(part, inner, known)
+            for part, inner in zip(value, schemas, strict=False)
         ]
     return int(value) if schema.get("type") == "integer" else value
 
@@ -293,10 +293,10 @@ def meant(key: str, known: Collection[str]) -> str:
 def reason(error: ValidationError) -> str:
     """Why a value is not allowed, and the remedy for a number that was read as a text."""
     described = error.schema.get("description")
-    found = f" ({described})" if described else ""
+    text = f" ({described})" if described else ""
     if error.validator == "type" and isinstance(error.instance, str):
-        found += (
+        text += (
             "; YAML reads 1e4 as a text: write 1.0e+4; nested values of --config are texts: write "
             "them into a file for --configfile"
         )
-    return found
+    return text

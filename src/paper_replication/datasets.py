@@ -240,7 +240,7 @@ def computed(function: Callable[..., xr.Dataset], given: Mapping) -> xr.Dataset:
     The parameters are those of the entry, and the settings of the run that the function takes.
     """
     settings = {key: given[key] for key in settings_of(function)}
-    entry = {key: each for key, each in given.items() if key not in settings}
+    entry = {key: value for key, value in given.items() if key not in settings}
     dataset = function(entry, **settings)
     return dataset.assign_attrs(parameters=json.dumps(plain(given), ensure_ascii=False))
 
@@ -263,7 +263,7 @@ def save_record(snakemake: Any, sources: Mapping[str, Mapping], project: Project
     path = Path(snakemake.output.record)
     results = path.parents[1]
     files = [relative(results, file) for file in {*snakemake.output} - {snakemake.output.record}]
-    found = {
+    record = {
         "made": contents_in(results, files),
         "data": below(results, sources["data"]),
         "code": below(project.checkout, sources["code"]),
@@ -271,12 +271,12 @@ def save_record(snakemake: Any, sources: Mapping[str, Mapping], project: Project
         "entries": plain(getattr(snakemake.params, "entries", {})),
         "made_at": datetime.now(UTC).isoformat(),
     }
-    write(path, f"{json.dumps(found, indent=1, sort_keys=True)}\n".encode())
+    write(path, f"{json.dumps(record, indent=1, sort_keys=True)}\n".encode())
 
 
 def below(top: Path, contents: Mapping[str, str]) -> dict[str, str]:
     """The contents of files, by their paths from a folder."""
-    return {relative(top, file): found for file, found in contents.items()}
+    return {relative(top, file): git_hash for file, git_hash in contents.items()}
 
 
 def attributes(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:
@@ -301,9 +301,9 @@ def parameters(dataset: xr.Dataset) -> dict:
 def plain(value: Any) -> Any:
     """Convert mappings, sequences and numpy's numbers to those of JSON."""
     if isinstance(value, Mapping):
-        return {str(key): plain(each) for key, each in value.items()}
+        return {str(key): plain(part) for key, part in value.items()}
     if isinstance(value, list | tuple | np.ndarray):
-        return [plain(each) for each in value]
+        return [plain(part) for part in value]
     return value.item() if isinstance(value, np.generic) else value
 
 
@@ -341,8 +341,8 @@ def selected(data: xr.Dataset, needed: Mapping) -> xr.Dataset:
         if isinstance(value, Among):
             name = key if key in data.coords else value.dimension
             places = []
-            for each in value.values:
-                labels = each if isinstance(each, Mapping) else {name: each}
+            for wanted in value.values:
+                labels = wanted if isinstance(wanted, Mapping) else {name: wanted}
                 there = [data[label].values == number for label, number in labels.items()]
                 places.append(np.flatnonzero(np.all(there, axis=0))[0])
             data = data.isel({value.dimension: places})
@@ -372,7 +372,7 @@ def others(name: str, given, needed) -> Iterator[str]:
         for key, value in needed.items():
             yield from others(f"{name}.{key}", given.get(key), value)
     elif isinstance(needed, Among):
-        if missing := [each for each in needed.values if each not in (given or ())]:
+        if missing := [wanted for wanted in needed.values if wanted not in (given or ())]:
             yield f"{name} lacks {words(missing)}"
     elif given != needed:
         yield f"{name} is {words(given)} instead of {words(needed)}"
@@ -387,5 +387,5 @@ def words(value: Any) -> str:
     if isinstance(value, list):
         return ", ".join(map(words, value))
     if isinstance(value, Mapping):
-        return f"({', '.join(f'{key} {each}' for key, each in sorted(value.items()))})"
+        return f"({', '.join(f'{key} {part}' for key, part in sorted(value.items()))})"
     return str(value)

@@ -245,7 +245,7 @@ def name_points(axes: Axes, names: Sequence[tuple[str, tuple[float, float], int]
             if (
                 axes.bbox.contains(*box.min)
                 and axes.bbox.contains(*box.max)
-                and not any(box.overlaps(each) for each in taken)
+                and not any(box.overlaps(other) for other in taken)
                 and not any(path.intersects_bbox(box, filled=False) for path in paths)
             ):
                 taken.append(box)

@@ -100,14 +100,14 @@ def group_of(claim: Claim) -> str:
 # Tables
 
 
-def computed_text(found: float, printed: str) -> str:
+def computed_text(number: float, printed: str) -> str:
     """Print a computed number with two digits more than the printed one.
 
     >>> computed_text(1.0383008, "1.032"), computed_text(82.177, "82"), computed_text(np.nan, "6")
     ('1.03830', '82.18', '–')
     """
     decimals = len(printed.partition(".")[2]) + 2
-    return "–" if np.isnan(found) else f"{found:.{decimals}f}"
+    return "–" if np.isnan(number) else f"{number:.{decimals}f}"
 
 
 def distance_text(units: float, share: float) -> str:
@@ -216,18 +216,18 @@ def all_claims(data: xr.Dataset) -> list[list[str]]:
 
 def counts(data: xr.Dataset) -> dict[str, dict[str, int]]:
     """Count the claims by group and verdict; restored formulas are not counted."""
-    found = Counter(
+    tally = Counter(
         zip(data["group"].values.tolist(), data["verdict"].values.tolist(), strict=True)
     )
-    return {group: {verdict: found[group, verdict] for verdict in VERDICTS} for group in GROUPS}
+    return {group: {verdict: tally[group, verdict] for verdict in VERDICTS} for group in GROUPS}
 
 
 def summary(data: xr.Dataset) -> list[list[str]]:
     """Return the counts as rows of texts, the header first."""
-    found = counts(data)
-    used = [verdict for verdict in VERDICTS if any(by[verdict] for by in found.values())]
+    tally = counts(data)
+    used = [verdict for verdict in VERDICTS if any(by[verdict] for by in tally.values())]
     rows = [["claims", "in all", *used]]
-    for group, by in found.items():
+    for group, by in tally.items():
         numbers = [sum(by.values()), *(by[verdict] for verdict in used)]
         rows.append([f"{group}s", *map(str, numbers)])
     return rows
@@ -241,6 +241,6 @@ def claims_markdown(data: xr.Dataset, introduction: str, elsewhere: str) -> str:
     """
     text = f"{introduction}\n## How many\n\n{markdown(summary(data))}"
     for group in (*GROUPS, "own claim"):
-        if claims := [each for each in claims_of(data, group) if each["item"] != elsewhere]:
+        if claims := [claim for claim in claims_of(data, group) if claim["item"] != elsewhere]:
             text += f"\n## {group.capitalize()}s\n\n{markdown(chosen(SECTIONS[group], claims))}"
     return text

@@ -53,7 +53,7 @@ class Marks(Extension):
             if token.type == "variable_end":
                 end = [("rparen", ")"), ("pipe", "|"), ("name", "mark")]
                 end += [("lparen", "("), ("string", str(next(place))), ("rparen", ")")]
-                yield from (Token(token.lineno, *each) for each in end)
+                yield from (Token(token.lineno, *new) for new in end)
             yield token
             if token.type == "variable_begin":
                 yield Token(token.lineno, "lparen", "(")
@@ -73,10 +73,10 @@ def bare(text: str) -> str:
 
 def printed(text: str) -> dict[int, list[str]]:
     """Return the texts that each expression printed, by its index in the template."""
-    found: dict[int, list[str]] = {}
+    texts: dict[int, list[str]] = {}
     for number, words in MARK.findall(text):
-        found.setdefault(int(number), []).append(words.replace("**", ""))
-    return found
+        texts.setdefault(int(number), []).append(words.replace("**", ""))
+    return texts
 
 
 @dataclass(frozen=True)
@@ -116,9 +116,9 @@ def origins(
     ({'far': 'far = fig14.n'}, ['fig14'])
     """
     known = {"given": Origin("", {}, datasets)}
-    known |= {each: Origin("", {}, [each]) for each in datasets}
-    known |= {each: Origin("", {}, sources) for each, sources in behind.items()}
-    found: list[Origin] = []
+    known |= {dataset: Origin("", {}, [dataset]) for dataset in datasets}
+    known |= {given: Origin("", {}, sources) for given, sources in behind.items()}
+    expressions: list[Origin] = []
     free: set[str] = set()
     outside: list[tuple[str, int, dict[str, Origin]]] = []
     for line, text in statements(source, name, filename):
@@ -134,21 +134,21 @@ def origins(
             message = f"{text}: {defined} has another meaning before: give this another name"
             raise jinja2.TemplateSyntaxError(message, line, name, filename)
         if part["printed"]:
-            found.append(together(expression, used))
+            expressions.append(together(expression, used))
         elif part["set"]:
             known[part["set"]] = together(f"{part['set']} = {expression}", used)
         elif part["each"]:
             outside.append(("", 0, known))
-            each = together(f"{part['each']} in {expression}", used)
-            known = known | dict.fromkeys(WORD.findall(part["each"]), each)
+            origin = together(f"{part['each']} in {expression}", used)
+            known = known | dict.fromkeys(WORD.findall(part["each"]), origin)
         elif part["macro"]:
-            outside.append((part["macro"], len(found), known))
+            outside.append((part["macro"], len(expressions), known))
             known = known | dict.fromkeys(WORD.findall(part["arguments"]), Origin("", {}, []))
         elif part["end"]:
             macro, first, known = outside.pop()
             if macro:
-                known[macro] = together("", {each.expression: each for each in found[first:]})
-    return found
+                known[macro] = together("", {one.expression: one for one in expressions[first:]})
+    return expressions
 
 
 def statements(

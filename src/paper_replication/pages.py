@@ -68,7 +68,7 @@ def parts(
 
     `tables` has the functions of the tables. The claims of the item `elsewhere` are in their table.
     """
-    found = []
+    shown_parts = []
     for name in sorted(entries, key=lambda name: (not name.startswith("fig"), name)):
         entry = entries[name]
         kinds = {"dataset": "nc"} if name in datasets else {}
@@ -77,7 +77,7 @@ def parts(
         if entry.get("table"):
             kinds |= {"CSV": "csv", "Markdown": "md"}
         decided = {claim.beside for claim in claims if name in claim.datasets}
-        found.append(
+        shown_parts.append(
             Part(
                 name,
                 title=entry["title"],
@@ -92,7 +92,7 @@ def parts(
         Part(key, title, rows=rows_beside(key, datasets, elsewhere))
         for key, title in SEVERAL.items()
     ]
-    return found + general
+    return shown_parts + general
 
 
 def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[dict]:
@@ -189,9 +189,9 @@ def framed(
 def with_origins(body: str, name: str, origin: Sequence[origins.Origin]) -> str:
     """Link what the expressions printed, if they name a dataset."""
 
-    def linked(found: re.Match) -> str:
-        number = int(found[1])
-        text = found[2]
+    def linked(mark: re.Match) -> str:
+        number = int(mark[1])
+        text = mark[2]
         if not origin[number].datasets:
             return text
         title = escape(origin[number].expression)
@@ -203,8 +203,8 @@ def with_origins(body: str, name: str, origin: Sequence[origins.Origin]) -> str:
 @cache
 def parser() -> MarkdownIt:
     """The parser of our texts: Markdown with tables, line breaks in cells, and formulas."""
-    found = MarkdownIt("commonmark").enable("table")
-    return found.use(dollarmath_plugin, renderer=formula, allow_digits=False)
+    markdown = MarkdownIt("commonmark").enable("table")
+    return markdown.use(dollarmath_plugin, renderer=formula, allow_digits=False)
 
 
 def formula(tex: str, options: Mapping) -> str:
@@ -220,8 +220,8 @@ def formula(tex: str, options: Mapping) -> str:
         return convert(tex)
     numbered = re.split(r"\\q?quad(?!\s*\\text\{\()", tex)
     return "".join(
-        f'<span class="numbered">{"".join(convert(each, display="block") for each in parts)}</span>'
-        for parts in (re.split(r"\\q?quad", each) for each in numbered)
+        f'<span class="numbered">{"".join(convert(part, display="block") for part in parts)}</span>'
+        for parts in (re.split(r"\\q?quad", part) for part in numbered)
     )
 
 
@@ -241,7 +241,7 @@ def link(target: str, pages: Mapping[str, str] = PAGES) -> str:
 
 def name_headings(tokens: Sequence[Token]) -> list[tuple[str, str]]:
     """Give each heading its number as an anchor, and return anchors and texts."""
-    found = []
+    headings = []
     for heading, text in pairwise(tokens):
         if heading.type == "heading_open":
             words = origins.bare(text.content)
@@ -249,8 +249,8 @@ def name_headings(tokens: Sequence[Token]) -> list[tuple[str, str]]:
             anchor = f"section-{number[0].rstrip('.')}" if number else words.lower()
             heading.attrs["id"] = anchor
             if heading.tag != "h3":
-                found.append((anchor, words))
-    return found
+                headings.append((anchor, words))
+    return headings
 
 
 def name_references(tokens: Sequence[Token]) -> None:
@@ -282,15 +282,15 @@ def with_links(body: str, pages: Mapping[str, str] = PAGES) -> str:
     def linked(text: str, page: str, anchor: str) -> str:
         return f'<a href="{page}#{anchor}">{text}</a>' if page in pages else text
 
-    def figures(found: re.Match) -> str:
-        return found[1] + linked(found[3], "index.html", found[2])
+    def figures(match: re.Match) -> str:
+        return match[1] + linked(match[3], "index.html", match[2])
 
-    def sections(found: re.Match) -> str:
-        page = "supplement.html" if found[1].startswith("S") else "paper.html"
-        return linked(found[0], page, f"section-{found[1]}")
+    def sections(match: re.Match) -> str:
+        page = "supplement.html" if match[1].startswith("S") else "paper.html"
+        return linked(match[0], page, f"section-{match[1]}")
 
-    def citations(found: re.Match) -> str:
-        return re.sub(r"\d+", lambda n: linked(n[0], "paper.html", f"reference-{n[0]}"), found[0])
+    def citations(match: re.Match) -> str:
+        return re.sub(r"\d+", lambda n: linked(n[0], "paper.html", f"reference-{n[0]}"), match[0])
 
     caption = r'(<img src="figures/(\w+)\.svg"[^>]*>\s*)(<strong>.*?</strong>)'
     body = re.sub(caption, figures, body)
@@ -317,7 +317,7 @@ def numbers(
     """
     judged = counted(datasets["claims"])
     sentences = {name: sentences_of(text, origin[name], judged) for name, text in texts.items()}
-    every = [row for found in sentences.values() for _, rows in found for row in rows]
+    every = [row for listed in sentences.values() for _, rows in listed for row in rows]
     terms = [row["terms"][0].partition(" | ")[0] for row in every]
     examples = (
         term
@@ -347,7 +347,7 @@ def sentences_of(
     An expression of several lines, as in tables, is listed with the first.
     """
     printed = origins.printed(text)
-    found = []
+    sentences = []
     for line in text.splitlines():
         rows = []
         for number in origins.printed(line):
@@ -364,8 +364,8 @@ def sentences_of(
                     }
                 )
         if rows:
-            found.append((parser().renderInline(origins.bare(line).strip("| ")), rows))
-    return found
+            sentences.append((parser().renderInline(origins.bare(line).strip("| ")), rows))
+    return sentences
 
 
 # Both
@@ -378,7 +378,7 @@ def unbroken(page: str) -> str:
     'for r_=_0.55 (1_%), by Eq._8'
     """
     parts = re.split(r"(<pre>.*?</pre>|<code>.*?</code>)", page, flags=re.DOTALL)
-    return "".join(each if k % 2 else joined(each) for k, each in enumerate(parts))
+    return "".join(part if k % 2 else joined(part) for k, part in enumerate(parts))
 
 
 def joined(page: str) -> str:

@@ -51,7 +51,7 @@ def from_source(*folders: Path) -> Iterator[None]:
     finder = FileFinder.path_hook((FromSource, SOURCE_SUFFIXES))
 
     def hook(folder: str) -> Any:
-        if not any(Path(folder).resolve().is_relative_to(each.resolve()) for each in folders):
+        if not any(Path(folder).resolve().is_relative_to(allowed.resolve()) for allowed in folders):
             raise ImportError(f"{folder} is not one of them")
         return finder(folder)
 

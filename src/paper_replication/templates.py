@@ -16,7 +16,7 @@ def environment(templates: Path, marked: bool = False) -> jinja2.Environment:
 
     If `marked`, it marks what the expressions print (see `origins`).
     """
-    found = jinja2.Environment(
+    jinja = jinja2.Environment(
         loader=jinja2.FileSystemLoader([templates, Path(__file__).parent], encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
         autoescape=jinja2.select_autoescape(["html.j2"], default=False),
@@ -25,6 +25,6 @@ def environment(templates: Path, marked: bool = False) -> jinja2.Environment:
         keep_trailing_newline=True,
         extensions=[origins.Marks] if marked else [],
     )
-    found.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
-    found.filters.update(listed=listed, zip=zip, mark=origins.mark)
-    return found
+    jinja.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
+    jinja.filters.update(listed=listed, zip=zip, mark=origins.mark)
+    return jinja

@@ -58,7 +58,7 @@ def listed(values: Iterable, digits: int | None = None) -> str:
     >>> listed([1.0, 2.5, 4.0]), listed(["one", "two"]), listed([1.234], 2)
     ('1, 2.5 and 4', 'one and two', '1.23')
     """
-    texts = [each if isinstance(each, str) else word(each, digits) for each in values]
+    texts = [value if isinstance(value, str) else word(value, digits) for value in values]
     *first, last = texts
     return f"{', '.join(first)} and {last}" if first else last
 
@@ -120,7 +120,7 @@ def save_table(rows: list[list[str]], as_markdown: str | Path, as_csv: str | Pat
     write(Path(as_csv), comma_separated(rows).encode())
 
 
-def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
+def parts_along(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
     """Split a dataset along dimensions; the last dimension varies fastest."""
     parts = [data]
     for name in dimensions:

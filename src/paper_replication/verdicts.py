@@ -72,7 +72,7 @@ class Comparison(NamedTuple):
     share: float
 
 
-def against_print(found: float, printed: str) -> Comparison:
+def against_print(computed: float, printed: str) -> Comparison:
     """Compare a number with the digits of a printed one.
 
     A number halfway between two roundings counts as rounding to either.
@@ -80,10 +80,10 @@ def against_print(found: float, printed: str) -> Comparison:
     >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2556, np.nan)]
     ['reproduced', 'not reproduced', 'not asked']
     """
-    if np.isnan(found):
+    if np.isnan(computed):
         return Comparison("not asked", np.nan, np.nan)
     decimals = len(printed.partition(".")[2])
-    distance = found - float(printed)
+    distance = computed - float(printed)
     units = distance * 10.0**decimals
     verdict = "reproduced" if abs(units) <= 0.5 + ROUNDING else "not reproduced"
     return Comparison(verdict, units, distance / abs(float(printed)))
@@ -121,34 +121,34 @@ class Reading(NamedTuple):
 
 def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
     """Require that no number is larger than a bound."""
-    found = largest(values)
+    worst = largest(values)
     words = {0: "none allowed", ROUNDING: "0 within rounding"}
     required = words.get(bound, f"at most {three_digits(bound)}")
-    return Reading(name, found <= bound, found, required)
+    return Reading(name, worst <= bound, worst, required)
 
 
 def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
     """Require that no number is smaller than a bound."""
-    found = smallest(values)
-    return Reading(name, found >= bound, found, f"at least {three_digits(bound)}")
+    worst = smallest(values)
+    return Reading(name, worst >= bound, worst, f"at least {three_digits(bound)}")
 
 
 def within(name: str, values: ArrayLike, limit: float) -> Reading:
     """Require that no share is larger than a limit."""
-    found = largest(values)
-    return Reading(name, found <= limit, found, f"at most {100 * limit:g} %", True)
+    worst = largest(values)
+    return Reading(name, worst <= limit, worst, f"at most {100 * limit:g} %", True)
 
 
 def beyond(name: str, values: ArrayLike, limit: float) -> Reading:
     """Require that no share is smaller than a limit."""
-    found = smallest(values)
-    return Reading(name, found >= limit, found, f"at least {100 * limit:g} %", True)
+    worst = smallest(values)
+    return Reading(name, worst >= limit, worst, f"at least {100 * limit:g} %", True)
 
 
 def above(name: str, values: ArrayLike) -> Reading:
     """Require that every number is positive."""
-    found = smallest(values)
-    return Reading(name, found > 0, found, "positive")
+    worst = smallest(values)
+    return Reading(name, worst > 0, worst, "positive")
 
 
 def argued(name: str, holds: bool, reason: str) -> Reading:
@@ -235,13 +235,13 @@ def not_asked(reason: str) -> dict:
 
 def of_number(claim: Claim, computed: ArrayLike) -> dict:
     """The verdict on a printed number."""
-    found = float(np.asarray(computed))
-    verdict, units, share = against_print(found, claim.printed)
+    number = float(np.asarray(computed))
+    verdict, units, share = against_print(number, claim.printed)
     if verdict == "not asked":
         return not_asked(missing_numbers(claim))
     return {
         "verdict": verdict,
-        "found": found,
+        "found": number,
         "deviation_units": units,
         "deviation": share,
     }
@@ -257,23 +257,23 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
     if np.isnan(numbers).any():
         return not_asked(missing_numbers(claim))
     literal = readings[0].found if readings else None
-    found = {
+    judgement = {
         "found": np.nan if literal is None else literal,
         "condition": condition_texts(readings),
     }
     if readings and not numbers:
-        found["decided_by"] = "algebra"
+        judgement["decided_by"] = "algebra"
     right = [reading.holds for reading in readings]
     if claim.missing and (any(right) != all(right) or not readings):
         reason = f"the text does not say {claim.missing}"
-        return found | {"verdict": "not testable", "reason": reason}
+        return judgement | {"verdict": "not testable", "reason": reason}
     if all(right):
         certain = all(reading.cannot_fail for reading in readings)
-        return found | {"verdict": "reproduced", "own_sense": "cannot fail" if certain else ""}
+        return judgement | {"verdict": "reproduced", "own_sense": "cannot fail" if certain else ""}
     if not any(right):
-        return found | {"verdict": "not reproduced"}
+        return judgement | {"verdict": "not reproduced"}
     sense = "holds" if readings[0].holds else "does not hold"
-    return found | {"verdict": "partly", "own_sense": sense}
+    return judgement | {"verdict": "partly", "own_sense": sense}
 
 
 def condition_texts(readings: list[Reading]) -> list[str]:
@@ -284,10 +284,9 @@ def condition_texts(readings: list[Reading]) -> list[str]:
     """
     texts = []
     for k, reading in enumerate(readings):
-        found = reading.found
         number = ""
-        if found is not None and np.isfinite(found):
-            number = f"{rounded(found, reading.is_share)}, "
+        if reading.found is not None and np.isfinite(reading.found):
+            number = f"{rounded(reading.found, reading.is_share)}, "
         word = "yes" if reading.holds else "no"
         mark = "literally, " if k == 0 and len(readings) > 1 else ""
         texts.append(f"{mark}{word}: {reading.name} ({number}{reading.required})")

@@ -50,8 +50,8 @@ def along_frequency_ratio(
 
 def cases(parameters: dict, release: str) -> xr.Dataset:
     """Pairs of r and Λ (Figs. 5 and 6)."""
-    r = np.array([each["restitution"] for each in parameters["cases"]])
-    amplitude = np.array([each["amplitude"] for each in parameters["cases"]])
+    r = np.array([case["restitution"] for case in parameters["cases"]])
+    amplitude = np.array([case["amplitude"] for case in parameters["cases"]])
     ratios = grid(parameters["frequency_ratio"])
     return along_frequency_ratio(parameters["n"], r, amplitude, ratios, release)
 

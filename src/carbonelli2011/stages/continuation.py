@@ -62,19 +62,19 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     ratios = np.atleast_1d(parameters["frequency_ratio"])
     zeta = float(damping_ratio(parameters["restitution"], release))
     families = [Family(parameters["n"], Contact(ratio, zeta, release)) for ratio in ratios]
-    found = [followed(family, parameters, largest_step) for family in families]
-    if all(np.isnan(each.orbits).all() for each in found):
-        raise NoOrbit(found[0].ends[0].reason)
-    count = max(len(each.special) for each in found)
-    pairs = zip(families, found, strict=True)
+    followed_branches = [followed(family, parameters, largest_step) for family in families]
+    if all(np.isnan(line.orbits).all() for line in followed_branches):
+        raise NoOrbit(followed_branches[0].ends[0].reason)
+    count = max(len(line.special) for line in followed_branches)
+    pairs = zip(families, followed_branches, strict=True)
     laid = [other_ranges(*pair, parameters["amplitude_max"]) for pair in pairs]
     laid_count = max(1, *map(len, laid))
     rows = []
-    for family, each, ranges in zip(families, found, laid, strict=True):
-        quantities = family.observables(each.orbits, QUANTITIES)
-        multipliers = family.multipliers(each.orbits).T
+    for family, line, ranges in zip(families, followed_branches, laid, strict=True):
+        quantities = family.observables(line.orbits, QUANTITIES)
+        multipliers = family.multipliers(line.orbits).T
         ratio = family.contact.frequency_ratio
-        special = each.special
+        special = line.special
         durations = [point.orbit[3] / ratio for point in special]
         rows.append(
             quantities
@@ -88,8 +88,8 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
                 "special_arclength": padded([point.place for point in special], count, np.nan),
                 "laid_amplitude": padded([*ranges[:, 0]], laid_count, [np.nan] * 2),
                 "laid_contact_duration": padded([*ranges[:, 1]], laid_count, [np.nan] * 2),
-                "end_kind": [end.kind for end in each.ends],
-                "end_reason": [end.reason for end in each.ends],
+                "end_kind": [end.kind for end in line.ends],
+                "end_reason": [end.reason for end in line.ends],
             }
         )
     axes = {"multiplier": ("point", "multiplier"), "special": ("special",), "end": ("end",)}
@@ -163,7 +163,7 @@ def table1(parameters: dict, release: str) -> xr.Dataset:
             "admissible": (shape, np.stack(admissible, axis=-1)),
             "restitution_range": (
                 ("impact_map", "n", "bound"),
-                [np.stack([fold, each], axis=-1) for each in doublings],
+                [np.stack([fold, doubling], axis=-1) for doubling in doublings],
             ),
         },
         {

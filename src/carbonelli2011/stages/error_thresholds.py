@@ -22,14 +22,14 @@ def fig14(parameters: dict, release: str) -> xr.Dataset:
     names = ("max_height", "phase", "contact_duration", "impact_velocity", "stable", "admissible")
     quantities = family.observables(orbits, names)
     error = errors(["max_height"], n, r, amplitude, ratios, release)["max_height"]
-    found = threshold(ratios, error, parameters["tolerance"])
+    crossing = threshold(ratios, error, parameters["tolerance"])
     return xr.Dataset(
         {
-            **{name: ("frequency_ratio", each) for name, each in quantities.items()},
+            **{name: ("frequency_ratio", values) for name, values in quantities.items()},
             "restitution_max_height": float(restitution.max_height(n, r, amplitude)),
             "relative_error": ("frequency_ratio", error.values),
-            "error_threshold": found.ratio,
-            "threshold_status": found.status,
+            "error_threshold": crossing.ratio,
+            "threshold_status": crossing.status,
         },
         {"frequency_ratio": ratios},
     )
@@ -47,20 +47,20 @@ def thresholds(parameters: dict, release: str) -> xr.Dataset:
         release,
     )
     tolerances = parameters["tolerances"]
-    found = [threshold(ratios, each, tolerances) for each in known.values()]
+    crossings = [threshold(ratios, error, tolerances) for error in known.values()]
     shape = ("quantity", "tolerance")
     return xr.Dataset(
         {
             "relative_error": (
                 ("quantity", "frequency_ratio"),
-                [each.values for each in known.values()],
+                [error.values for error in known.values()],
             ),
             "admissible": (
                 ("quantity", "frequency_ratio"),
-                [np.broadcast_to(each.admissible, ratios.shape) for each in known.values()],
+                [np.broadcast_to(error.admissible, ratios.shape) for error in known.values()],
             ),
-            "error_threshold": (shape, [each.ratio for each in found]),
-            "threshold_status": (shape, [each.status for each in found]),
+            "error_threshold": (shape, [crossing.ratio for crossing in crossings]),
+            "threshold_status": (shape, [crossing.status for crossing in crossings]),
         },
         {"quantity": list(known), "frequency_ratio": ratios, "tolerance": tolerances},
     )

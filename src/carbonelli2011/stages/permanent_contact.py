@@ -38,11 +38,11 @@ def fig16(parameters: dict, release: str) -> xr.Dataset:
     lowest_ratio, _ = spring_damper.lowest_permanent_contact(zeta, release)
     turns = np.union1d(ratios, np.clip(lowest_ratio, ratios[0], ratios[-1]))
     searched = permanent_contact_error(turns, zeta, release)
-    found = threshold(turns, searched, parameters["tolerance"])
+    crossing = threshold(turns, searched, parameters["tolerance"])
     return fig11(parameters, release).assign(
         relative_error=("frequency_ratio", error.values),
-        error_threshold=found.ratio,
-        threshold_status=found.status,
+        error_threshold=crossing.ratio,
+        threshold_status=crossing.status,
     )
 
 

@@ -82,12 +82,12 @@ impact has the restitution r.
 
 def ends_of_ranges(n: NDArray, ratios: NDArray) -> dict[str, NDArray]:
     """Both ends of the ranges of Table 1 for each of `IMPACTS`, shape (ϖ, n, 2)."""
-    found: dict[str, NDArray] = {}
+    ends_by_name: dict[str, NDArray] = {}
     for release in RELEASES:
-        impacts = {name: each for name, each in IMPACTS.items() if each.release == release}
+        impacts = {name: impact for name, impact in IMPACTS.items() if impact.release == release}
         # One walk along the contacts has the families of all of them.
-        damping = np.array([float(each.damping(R_OF_TABLE_1)) for each in impacts.values()])
-        weight = np.array([each.weight for each in impacts.values()])
+        damping = np.array([float(impact.damping(R_OF_TABLE_1)) for impact in impacts.values()])
+        weight = np.array([impact.weight for impact in impacts.values()])
         contact = Contact(
             ratios,
             np.repeat(damping, n.size)[:, np.newaxis],
@@ -97,8 +97,8 @@ def ends_of_ranges(n: NDArray, ratios: NDArray) -> dict[str, NDArray]:
         families = np.tile(n, len(impacts))
         kinds = [bifurcations(families, kind, contact)[0] for kind in BOUNDS]
         ends = np.stack(kinds, axis=-1).reshape(len(impacts), n.size, ratios.size, 2)
-        found |= dict(zip(impacts, ends.swapaxes(1, 2), strict=True))
-    return found
+        ends_by_name |= dict(zip(impacts, ends.swapaxes(1, 2), strict=True))
+    return ends_by_name
 
 
 def high_bounce_doublings(n: NDArray, ratios: NDArray) -> NDArray:
@@ -129,8 +129,8 @@ def stiff_reproduced(n: NDArray, printed: NDArray) -> NDArray:
     ratios = 10.0 ** np.array(EXPONENTS)
     contact = IMPACTS[AS_THEY_STAND].contact(R_OF_TABLE_1, ratios)
     nodes = bifurcations(n, "saddle-node", contact)[0].T
-    found = np.stack([nodes, high_bounce_doublings(n, ratios)], axis=-1)
-    return reproduced((found - printed) / DIGIT).sum(axis=(1, 2))
+    row = np.stack([nodes, high_bounce_doublings(n, ratios)], axis=-1)
+    return reproduced((row - printed) / DIGIT).sum(axis=(1, 2))
 
 
 # The other printed numbers
@@ -240,7 +240,7 @@ def hypotheses(parameters: dict) -> xr.Dataset:
 
     table["digits cut off"] = plain.cut_off(digits)
 
-    computed = np.stack([each.numbers() for each in table.values()])
+    computed = np.stack([hypothesis.numbers() for hypothesis in table.values()])
     units = (computed - np.array(texts, dtype=float)) / digits
     # The rows of the compliant contacts, in which most hypotheses differ.
     compliant = units[:, plain.ends[0].size : plain.ends.size]
@@ -257,7 +257,7 @@ def hypotheses(parameters: dict) -> xr.Dataset:
             "largest_difference": ("hypothesis", abs(compliant).max(axis=1)),
             "printed_text": ("number", texts),
             "row": ("number", [*(ratio for ratio, _, _ in ends), *[np.nan] * len(decided)]),
-            "contact_of": ("hypothesis", [each.contact for each in table.values()]),
+            "contact_of": ("hypothesis", [hypothesis.contact for hypothesis in table.values()]),
             "damping_of_82": ("end", damping_of_82()),
             "stiff_reproduced": ("exponent", stiff_reproduced(n, printed.values[0].astype(float))),
             "below_orbits": int((distances[..., 0] > 0.5 + ROUNDING).sum()),

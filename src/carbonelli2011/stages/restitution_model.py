@@ -41,7 +41,7 @@ def fig03(parameters: dict) -> xr.Dataset:
     x = restitution.saddle_node(n, r)
     highest = np.sqrt(np.where(x <= largest, largest**2 - x**2, np.nan))
     impact_height = np.linspace(-1, 1, parameters["points"]) * highest[:, np.newaxis]
-    grazing = np.array([restitution.grazing_height(each, r) for each in n])
+    grazing = np.array([restitution.grazing_height(family, r) for family in n])
     seen = np.hypot(x, grazing) <= largest
     doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
     shape = ("n", "point")
@@ -53,8 +53,8 @@ def fig03(parameters: dict) -> xr.Dataset:
             "admissible": (
                 shape,
                 [
-                    restitution.admissible(each, r, heights)
-                    for each, heights in zip(n, impact_height, strict=True)
+                    restitution.admissible(family, r, heights)
+                    for family, heights in zip(n, impact_height, strict=True)
                 ],
             ),
             "grazing_amplitude": ("n", np.where(seen, np.hypot(x, grazing), np.nan)),

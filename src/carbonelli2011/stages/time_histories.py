@@ -73,7 +73,7 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     period = 2 * np.pi * n
     families = [Family(n, Contact.of_restitution(ratio, r, release)) for ratio in ratios]
     orbits = upper_orbits(n, r, amplitude, ratios, release)[:, 0]
-    rows = [each.observables(y, STATE) for each, y in zip(families, orbits.T, strict=True)]
+    rows = [family.observables(y, STATE) for family, y in zip(families, orbits.T, strict=True)]
     state = {name: np.array([row[name] for row in rows]) for name in STATE}
     phase = float(restitution.impact_phase(n, r, amplitude))
     corners = np.concatenate([[phase], state["phase"], state["phase"] + state["contact_duration"]])

@@ -124,8 +124,8 @@ def failures(
     share = np.full(errors.shape[:3], np.nan)
     mean, up_to, largest = np.full((3, *errors.shape[:2]), np.nan)
     known = np.isfinite(errors).all(axis=(2, 3, 4)) & np.isfinite(end_place).all(axis=1)
-    for each in np.argwhere(known):
-        k = tuple(each)
+    for index in np.argwhere(known):
+        k = tuple(index)
         end = np.clip(CubicSpline(r, end_place[k[1]])(fine_r), 0, 1)
         along = CubicSpline(np.log(r), errors[k])(np.log(fine_r))
         surface = np.stack(

@@ -3,7 +3,7 @@
 import xarray as xr
 
 from paper_replication.datasets import parameters
-from paper_replication.texts import each, number
+from paper_replication.texts import number, parts_along
 from studies.variables import LAW_NAMES
 
 
@@ -20,7 +20,7 @@ def ext_orders(data: xr.Dataset) -> list[list[str]]:
     """
     models = data["model"].values.tolist()
     rows = [["quantity", "K", "C", "law", *models, "error zero at"]]
-    for line in each(data, "quantity"):
+    for line in parts_along(data, "quantity"):
         thresholds = [
             number(
                 line["error_threshold"].sel(model=model),
@@ -60,7 +60,7 @@ def ext_laws(data: xr.Dataset) -> list[list[str]]:
     tolerance = parameters(data)["tolerance"]
     header = [f"{model}, π/(D + κ) = {ratio:.3g}" for model, ratio in places]
     rows = [["quantity", "law", *header, f"π/(D + κ) for {100 * tolerance:g} %"]]
-    for line in each(data, "quantity", "law"):
+    for line in parts_along(data, "quantity", "law"):
         errors = [
             number(line["relative_error"].sel(model=model, centroid_ratio=ratio), ".2g")
             for model, ratio in places

@@ -101,7 +101,8 @@ def change(clone: Path) -> None:
 
 def follow_recipes() -> int:
     """Change a clone, and accept its results as CONTRIBUTING.md says."""
-    commit = "git -c user.name=A -c user.email=a@example.org commit --quiet --all --message"
+    git = "git -c user.name=A -c user.email=a@example.org"
+    commit = f"{git} commit --quiet --all --message"
     make = f"make VENV={ROOT}/.venv"
     with TemporaryDirectory() as folder:
         clone = Path(folder, "clone")
@@ -118,6 +119,11 @@ def follow_recipes() -> int:
             "grep 'Somebody Else' paper.md",
             f"{make} diff",
             "git diff --exit-code",
+            # They are taken out again.
+            f"{git} revert --no-edit HEAD~1",
+            "rm results/figures/fig17.*",
+            f"{make} accept",
+            "test ! -e figures/fig17.nc",
         ]
         return run(lines, clone, ROOT / ".venv")
 

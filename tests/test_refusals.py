@@ -37,6 +37,7 @@ COLUMN = np.ones((1, 1))
 ROW = orbits.Family(COLUMN, Contact(SCAN, 0.14 * COLUMN))
 OTHERS = {
     "branch": {"family": ONE_CONTACT},
+    "laid_ranges": {"family": ONE_CONTACT},
     "departure": {"amplitude": 1.2},
     "orbits_along": {"family": ROW, "amplitude": COLUMN},
     "enough_from": {

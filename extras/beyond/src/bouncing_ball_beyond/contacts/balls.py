@@ -502,7 +502,7 @@ def restitution_of(pairs: Values) -> RestitutionFit:
     >>> r(np.array([1.0, 3.0])).round(2).tolist()
     [0.9, 0.83]
     >>> round(r.residual, 4), r.at
-    (0.0016, 2.0)
+    (0.0006, 2.0)
     """
     try:
         speeds, measured = np.asarray(pairs, float).T

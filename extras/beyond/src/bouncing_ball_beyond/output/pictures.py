@@ -31,6 +31,7 @@ MARKS = {
     "grazing of an impact": "<",
     "vanishing flight": ">",
     "lost release": "X",
+    "switch of a release": "+",
 }
 """Marker of each kind of special orbit."""
 

@@ -3,29 +3,12 @@
 # make replication  computes everything again, and compares it with the reference
 # make diff         the comparison alone; `snakemake --cores 2 fig14 diff` compares one figure
 
-# A VENV of the shell does not count: make VENV=/another/path
-VENV := .venv
-RUN := $(VENV)/bin/python -m
-SNAKEMAKE := $(RUN) snakemake --logger rich --cores 2
+include snakemake.mk
 ENVIRONMENT := sh ./environment.sh
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --no-emit-package bouncing-ball $(UPGRADE)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
 
-# Snakemake starts a Python whose path has no space.
-FOLDER := $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))
-ifneq ($(words $(FOLDER)),1)
-$(error The path of Python has a space: move this folder, or make VENV=/another/path)
-endif
-
-# Snakemake's cache is in the home folder, which may be read-only.
-WRITABLE := [ -w "$$HOME/.cache" ] || [ ! -e "$$HOME/.cache" -a -w "$$HOME" ]
-ifeq ($(XDG_CACHE_HOME)$(shell $(WRITABLE) && echo yes),)
-export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
-endif
-
-# Targets run one after another, because they share results/.
-.NOTPARALLEL:
 .PHONY: all setup develop test test-processors lint diff replication accept newest lowest lock wheels release wheelhouse clean
 
 all: setup

@@ -140,10 +140,12 @@ def test_a_ball_near_an_orbit_of_a_long_contact_stays_there(r, ratio, first, las
     np.testing.assert_allclose(again, y, rtol=1e-7)
     size, phase, velocity = (each.item() for each in y[:3])
     distances = []
-    landing, speed = phase, velocity + 1e-5
+    landing = phase
+    speed = velocity + 1e-5
     for _ in range(3):
         cycle = independent.cycle(ratio, zeta, "displacement", size, landing, speed)
-        landing, speed = landing + cycle.time, cycle.velocity
+        landing += cycle.time
+        speed = cycle.velocity
         distances.append(abs(speed - velocity) + abs(np.angle(np.exp(1j * (landing - phase)))))
     # Half of the disturbance.
     assert distances[-1] < 5e-6

@@ -104,14 +104,16 @@ def test_the_versions_of_python_are_the_same_everywhere():
     assert matrix["python"] == [named[0], named[-1]]
 
 
-def test_make_has_a_cache_for_snakemake_without_a_writable_home(tmp_path):
+@pytest.mark.parametrize("package", [ROOT, ROOT / "extras/beyond"], ids=["root", "beyond"])
+def test_make_has_a_cache_for_snakemake_without_a_writable_home(package, tmp_path):
     """`XDG_CACHE_HOME` of the user counts."""
 
     def cache(**given):
-        command = ["make", "-s", "-C", str(ROOT), "--eval=cache: ; @echo $$XDG_CACHE_HOME", "cache"]
+        rule = "cache: ; @echo $$XDG_CACHE_HOME"
+        command = ["make", "-s", "-C", str(package), f"--eval={rule}", "cache"]
         environment = {name: each for name, each in os.environ.items() if "XDG" not in name}
         return subprocess.check_output(command, env=environment | given, text=True).strip()
 
-    assert cache(HOME="/dev/null/none") == f"{ROOT}/.snakemake/cache"
+    assert cache(HOME="/dev/null/none") == f"{package}/.snakemake/cache"
     assert cache(HOME=str(tmp_path)) == ""
     assert cache(HOME="/dev/null/none", XDG_CACHE_HOME="/mine") == "/mine"

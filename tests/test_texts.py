@@ -127,13 +127,14 @@ def free_impact(damping: Callable, c: float, release: str, power: float = 1.5) -
     """r and duration for the force x^power + c damping(x) v; force release: it ends with this."""
 
     def force(_, state):
-        x, v = max(state[0], 0.0), state[1]
-        return x**power + c * damping(x) * v
+        x = max(state[0], 0.0)
+        return x**power + c * damping(x) * state[1]
 
     def end(_, state):
         return force(_, state) if release == "force" else state[0]
 
-    end.terminal, end.direction = True, -1
+    end.terminal = True
+    end.direction = -1
     path = solve_ivp(
         lambda time, state: [state[1], -force(time, state)],
         (0, 20),

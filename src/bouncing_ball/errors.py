@@ -211,9 +211,14 @@ def bifurcation_errors(
     for name in names:
         kind, test, limit = kinds[name]
         orbits = bifurcations(n, kind, family.contact)[:, 0]
-        admissible = family.admissible(orbits)
         error_of[name] = _along(
-            family, orbits, at_bifurcation(test), admissible, lambda family, y: y[0], limit, limit
+            family,
+            orbits,
+            condition=at_bifurcation(test),
+            admissible=family.admissible(orbits),
+            value=lambda family, y: y[0],
+            limit=limit,
+            unit=limit,
         )
     return error_of
 

@@ -22,8 +22,9 @@ WITHOUT_ORBITS = {"saddle_node", "period_doubling", "permanent_contact"}
 def stable_range(n: int, r: float) -> tuple[float, float]:
     """Amplitudes at both ends of the stable n-T orbits of the restitution model (Eqs. 7 and R1).
 
-    >>> [round(each, 4) for each in stable_range(1, 0.85)]
-    [0.2547, 1.0383]
+    >>> low, high = stable_range(1, 0.85)
+    >>> round(low, 4), round(high, 4)
+    (0.2547, 1.0383)
     """
     low = n * pi * (1 - r) / (1 + r)
     return low, hypot(low, 2 * (1 + r**2) / (1 + r) ** 2)
@@ -49,10 +50,8 @@ def without_orbit(config: Mapping) -> Iterator[str]:
             listed = amplitudes if isinstance(amplitudes, list) else [amplitudes]
             cases = [entry | {"amplitude": size} for size in listed] + entry.get("cases", [])
             lowest = [stable_range(entry["n"], case["restitution"])[0] for case in cases]
-            if (
-                all(case["amplitude"] < low for case, low in zip(cases, lowest, strict=True))
-                and cases
-            ):
+            below = [case["amplitude"] < low for case, low in zip(cases, lowest, strict=True)]
+            if cases and all(below):
                 yield (
                     f"{stage}.{name}: {entry['n']}-T orbits on stiff contacts need Λ >= "
                     f"{min(lowest):.6g} (Eq. 7), and the largest Λ is "

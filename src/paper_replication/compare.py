@@ -90,6 +90,7 @@ wrong. It follows if one of its datasets has another verdict. A picture is drawn
 same code, or that of the main branch, drew it with another matplotlib.
 """
 ON_PAGE = STATUS.keys() - {"agrees", "missing"}
+"""The verdicts on files that the page shows."""
 ROWS = 10
 """How many differences of a file a report prints. The page has all."""
 ONLY = ("#b34700", "#0072b2")
@@ -404,7 +405,8 @@ def elements(old: list, new: list) -> str:
     >>> elements([0.5, 0.65], [0.5, 0.7]), elements([1, 2, 5], [1, 3]), elements([1, 2], [2, 1])
     ('0.65 → 0.7', '3 is new, 2, 5 are missing', '')
     """
-    came, went = [x for x in new if x not in old], [x for x in old if x not in new]
+    came = [x for x in new if x not in old]
+    went = [x for x in old if x not in new]
     if came and len(old) == len(new) and len(came) == len(went):
         return f"{words(went)} → {words(came)}"
     return ", ".join(
@@ -506,16 +508,16 @@ def largest_change(old: xr.Dataset, new: xr.Dataset, name: str, far: np.ndarray)
     """
     finite = np.where(np.isfinite(far), far, 0.0)
     worst = np.unravel_index(np.argmax(finite if (finite > 1).any() else far), far.shape)
-    before, after, given = old[name].values[worst], new[name].values[worst], old[name].attrs
+    given = old[name].attrs
     places = zip(map(str, old[name].dims), worst, strict=True)
     return Difference(
         name,
-        excerpt(before, after),
-        ", ".join(labels(old, dim)[index] for dim, index in places),
-        int(np.count_nonzero(far > 1)),
-        far.size,
-        f"{given['tolerance']:g}" if "tolerance" in given else "",
-        given.get("long_name", ""),
+        excerpt(old[name].values[worst], new[name].values[worst]),
+        where=", ".join(labels(old, dim)[index] for dim, index in places),
+        differing=int(np.count_nonzero(far > 1)),
+        size=far.size,
+        tolerance=f"{given['tolerance']:g}" if "tolerance" in given else "",
+        long_name=given.get("long_name", ""),
     )
 
 
@@ -628,7 +630,8 @@ class Finding:
         several = len(self.differences) > 1
         told = [f"{len(self.differences)} differences"] * several or [*map(str, self.differences)]
         told += [f"{kind}: {', '.join(details)}" for kind, details in self.causes.items()]
-        rows, others = self.differences[: ROWS * several], self.differences[ROWS:]
+        rows = self.differences[: ROWS * several]
+        others = self.differences[ROWS:]
         widths = [
             max(map(len, texts)) for texts in zip(*(row.columns for row in rows), strict=True)
         ]
@@ -797,7 +800,7 @@ class Report:
         blocks = dict.fromkeys(finding.lines(Path(file).stem) for file, finding in files)
         return [*chain.from_iterable(blocks), *self.missing()]
 
-    def shown(self) -> dict[str, dict[str, Finding]]:
+    def on_page(self) -> dict[str, dict[str, Finding]]:
         """The files that the page shows, by name, datasets first."""
         by_name: dict[str, dict[str, Finding]] = {}
         for file, finding in self.those(*ON_PAGE).items():
@@ -876,7 +879,8 @@ def obstacles(project: Project, report: Report, checkout: Checkout | None) -> It
         files = " ".join(["figures", *project.texts])
         way = f"`git checkout HEAD -- {files}`, commit, and accept the results of the merge"
         yield f"{ACCEPTED} {CONFLICT}: {way}"
-    old, new = report.old, report.new
+    old = report.old
+    new = report.new
     is_copy = old.records == new.records and all(job["made_at"] for job in new.records.values())
     if old.folder.resolve() == new.folder.resolve() or (new.records and is_copy):
         yield f"{old.label} and {new.label} are the same run"
@@ -1173,22 +1177,25 @@ def drawn(project: Project, report: Report, file: str) -> list[bytes]:
 
 
 def over_each_other(pictures: Sequence[bytes]) -> list[bytes]:
-    """Two pictures of one size as one picture, as PNG; none if their sizes differ.
+    """Two pictures of one size as one picture, as PNG; none if their sizes differ, or if one cannot
+    be read.
 
     What both draw is grey. What only the first one draws has the first colour of `ONLY`, and what
     only the second one draws the second colour.
     """
+    images: list[np.ndarray] = []
     with suppress(Exception):  # Whatever readers raise for a damaged picture.
-        images = [Image.open(BytesIO(picture)).convert("RGB") for picture in pictures]
-        first, second = np.stack([np.asarray(image, float) for image in images])
-        shown = 255 - 0.3 * (255 - np.maximum(first, second)).max(-1, keepdims=True)
-        for gone, colour in zip((second - first, first - second), ONLY, strict=True):
-            share = np.clip(gone / 255, 0, 1).max(-1, keepdims=True)
-            shown = (1 - share) * shown + share * ImageColor.getrgb(colour)
-        with BytesIO() as picture:
-            Image.fromarray(shown.astype(np.uint8)).save(picture, "PNG")
-            return [picture.getvalue()]
-    return []
+        images = [np.asarray(Image.open(BytesIO(png)).convert("RGB"), float) for png in pictures]
+    if len(images) != 2 or images[0].shape != images[1].shape:
+        return []
+    first, second = images
+    both = 255 - 0.3 * (255 - np.maximum(first, second)).max(-1, keepdims=True)
+    for gone, colour in zip((second - first, first - second), ONLY, strict=True):
+        share = np.clip(gone / 255, 0, 1).max(-1, keepdims=True)
+        both = (1 - share) * both + share * ImageColor.getrgb(colour)
+    with BytesIO() as picture:
+        Image.fromarray(both.astype(np.uint8)).save(picture, "PNG")
+        return [picture.getvalue()]
 
 
 def save_report(project: Project, report: Report, folder: Path, stream: TextIO) -> int:

@@ -259,7 +259,8 @@ def ink(text: Text) -> Bbox:
     space above and below them.
     """
     point = text.figure.dpi / POINTS
-    along, across = 0.5 * point, -1.5 * point
+    along = 0.5 * point
+    across = -1.5 * point
     upright = text.get_rotation() in (90, 270)
     return text.get_window_extent().padded(*((across, along) if upright else (along, across)))
 

@@ -17,8 +17,11 @@ with reading(snakemake.input) as sources:
     try:
         texts = pages(datasets, snakemake.params.entries)
     except (ValueError, LookupError) as error:
+        # Of a template, the note is its line.
+        if not (notes := getattr(error, "__notes__", [])):
+            raise
         why = "the sentence is for other results: correct it, or PARAMETERS of paper.py"
-        sys.exit(f"{': '.join(getattr(error, '__notes__', []))}: {error}: {why}")
+        sys.exit(f"{': '.join(notes)}: {error}: {why}")
     for name, text in texts.items():
         (results / name).write_text(text, encoding="utf-8", newline="\n")
     save_record(snakemake, sources, PROJECT)

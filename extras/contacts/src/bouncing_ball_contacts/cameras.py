@@ -136,6 +136,59 @@ def _seen(
     return p / depth, derivatives
 
 
+def _fitted(
+    flight: Array,
+    since: Array,
+    later: Array,
+    y: Array,
+    gravity: float,
+    priors: Array,
+    drag: float,
+) -> tuple[Array, Array, float]:
+    """Fit flights and camera: return the numbers that `_seen` takes, their errors, and the misfit.
+
+    The fit is one of least squares with the priors of the camera, by Gauss and Newton, from a first
+    ``gravity``. ``priors`` are 1/σ² of c, e and ρ. A row of the errors is what an independent error
+    of one standard deviation adds to the numbers.
+
+    Raises
+    ------
+    LinAlgError
+        If the fit does not converge, because no ball has such flights.
+    """
+    n = len(y)
+    places = np.column_stack(
+        [
+            *np.repeat([range(_GLOBALS)], n, axis=0).T,
+            _GLOBALS + 2 * flight,
+            _GLOBALS + 1 + 2 * flight,
+        ]
+    )
+    precision = np.zeros(_GLOBALS + 2 * (flight.max() + 1))
+    precision[1:_GLOBALS] = priors
+    found = np.zeros(len(precision))
+    found[0] = gravity
+    noise = 1.0
+    # The last steps move nothing any more.
+    for _ in range(12):
+        seen, derivatives = _seen(found, flight, since, later, y, drag)
+        jacobian = sparse.csr_matrix(
+            (derivatives.ravel(), places.ravel(), np.arange(n + 1) * places.shape[1]),
+            shape=(n, len(found)),
+        )
+        left = y - seen
+        normal = (jacobian.T @ jacobian).toarray()
+        inverse = np.linalg.inv(normal / noise**2 + np.diag(precision))
+        move = inverse @ (jacobian.T @ left / noise**2 - precision * found)
+        found = found + move
+        used = len(found) - np.sum(np.diag(inverse) * precision)
+        noise = math.sqrt(max(float(left @ left) / max(n - used, 1.0), 1e-18))
+        if not (noise < math.inf and found[0] > 0):
+            raise np.linalg.LinAlgError("no ball has such flights")
+    misfit = _misfit(flight, since, left, n - used)
+    return found, misfit * np.linalg.cholesky(inverse).T, misfit
+
+
 def _on_one_floor(state: Array, changes: Array, impacts: int) -> tuple[Array, Array]:
     """Return a state and its changes by errors, given that the floor moves evenly in the picture.
 
@@ -160,9 +213,8 @@ def _on_one_floor(state: Array, changes: Array, impacts: int) -> tuple[Array, Ar
 def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) -> Film:
     """Fit the flights of a film with one gravity and one camera, and return its speeds.
 
-    The fit is one of least squares with the priors of the camera, by Gauss and Newton. The scale of
-    the speeds is gravity. Without a clock positions are in m, and times are scaled until gravity is
-    the standard one.
+    The scale of the speeds is gravity. Without a clock positions are in m, and times are scaled
+    until gravity is the standard one.
 
     Parameters
     ----------
@@ -193,38 +245,11 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
     lasts = math.sqrt(8 * span / gravities.mean())
     later = (t - t.mean()) / lasts
     reads = _READ * max(float(np.median(np.diff(np.unique(t)))), _SLOWEST_READ)
-    n = len(y)
-    count = len(middle)
-    places = np.column_stack(
-        [
-            *np.repeat([range(_GLOBALS)], n, axis=0).T,
-            _GLOBALS + 2 * flight,
-            _GLOBALS + 1 + 2 * flight,
-        ]
-    )
-    precision = np.zeros(_GLOBALS + 2 * count)
-    precision[1:_GLOBALS] = 1 / np.square([_BEND, _RECEDE, reads])
-
-    found = np.zeros(len(precision))
-    found[0] = 8 / lasts**2
-    noise = 1.0
-    # Gauss-Newton steps: the last ones move nothing any more.
-    for _ in range(12):
-        seen, derivatives = _seen(found, flight, since, later, y, drag)
-        jacobian = sparse.csr_matrix(
-            (derivatives.ravel(), places.ravel(), np.arange(n + 1) * places.shape[1]),
-            shape=(n, len(found)),
-        )
-        left = y - seen
-        normal = (jacobian.T @ jacobian).toarray()
-        inverse = np.linalg.inv(normal / noise**2 + np.diag(precision))
-        move = inverse @ (jacobian.T @ left / noise**2 - precision * found)
-        found = found + move
-        used = len(found) - np.sum(np.diag(inverse) * precision)
-        noise = math.sqrt(max(float(left @ left) / max(n - used, 1.0), 1e-18))
-        if not (noise < math.inf and found[0] > 0):
-            return unlike
-    misfit = _misfit(flight, since, left, n - used)
+    priors = 1 / np.square([_BEND, _RECEDE, reads])
+    try:
+        found, errors, misfit = _fitted(flight, since, later, y, 8 / lasts**2, priors, drag)
+    except np.linalg.LinAlgError:
+        return unlike
     shared = np.flatnonzero(np.diff(after) == 1)
     pairs = np.array([after - 1, after])
     away = middle[after] - middle[pairs]
@@ -245,7 +270,6 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
         return np.concatenate([*(scale * both), [scale * (moves + drifts / span)], apart])
 
     state = state_of(found)
-    errors = misfit * np.linalg.cholesky(inverse).T
     changes = np.array([(state_of(found + each) - state_of(found - each)) / 2 for each in errors])
     if not (state[: 2 * len(after)].min() > 0 and np.isfinite(changes).all()):
         return unlike

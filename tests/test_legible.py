@@ -147,7 +147,16 @@ EXTREMES = [
             "samples": 101,
         },
     ),
-    ("regimes", {"n": 5, "restitution": 0.05, "places": 5, "frequency_ratio": ratios(10, 1e6, 7)}),
+    (
+        "regimes",
+        {
+            "quantity": "apparent_restitution",
+            "n": 5,
+            "restitution": 0.05,
+            "places": 5,
+            "frequency_ratio": ratios(10, 1e6, 7),
+        },
+    ),
     ("regimes", {"restitution": 0.3, "places": 5, "frequency_ratio": ratios(50.0, 200.0, 7)}),
     ("regimes", {"restitution": 0.98, "places": 5, "advised": 12345.0}),
 ]

@@ -771,7 +771,7 @@ def validity_map(data: xr.Dataset) -> Figure:
 
 
 def regimes(data: xr.Dataset) -> Figure:
-    """What a ball does over Λ, and at which ϖ the restitution model has its maximum height.
+    """What a ball does over Λ, and at which ϖ the restitution model has the quantity.
 
     The upper panel is about the restitution model, in which no ϖ occurs.
     """
@@ -789,7 +789,7 @@ def regimes(data: xr.Dataset) -> Figure:
         line.barh(height, end - start, left=start, height=0.7, color="0.85")
     for kind, end in (("saddle-node", first), ("period doubling", last)):
         line.plot(end, 1, color="black", label=kind, **mark_look(kind))
-    figure.suptitle(f"maximum height in flight, {title(data, 'n', 'restitution')}")
+    figure.suptitle(f"{paper.QUANTITIES[given['quantity']]}, {title(data, 'n', 'restitution')}")
     line.set_title("restitution model", loc="left")
     axes.set_title("spring-damper model", loc="left")
     axes.set_xlim(0, 1.1 * max(last, rest))

@@ -218,7 +218,7 @@ def last_positive(values: NDArray, r: NDArray) -> float:
 
 
 def regimes(parameters: dict, release: str) -> xr.Dataset:
-    """The ϖ from which on the maximum height of a ball stays within the tolerance, over Λ, and the
+    """The ϖ from which on a quantity of the orbit stays within the tolerance, over Λ, and the
     amplitudes over ϖ between which its contact has the stable orbit, and a ball at rest stays.
     """
     ratios = grid(parameters["frequency_ratio"])
@@ -237,7 +237,7 @@ def regimes(parameters: dict, release: str) -> xr.Dataset:
     return xr.Dataset(
         {
             "amplitude": ("place", amplitude[:, 0]),
-            "enough_from": ("place", enough[COMPARED.index("summit")]),
+            "enough_from": ("place", enough[COMPARED.index(parameters["quantity"])]),
             "saddle_node_amplitude": ("frequency_ratio", node),
             "period_doubling_amplitude": ("frequency_ratio", doubling),
             "threshold_amplitude": (

@@ -80,7 +80,7 @@ def listed(data) -> str:
 def test_pages_need_no_network_and_no_script(texts, read):
     loading = ("<script", "<link", "<iframe", "@import", "url(")
     for name, text in texts.items():
-        assert [each for each in loading if each in text] == []
+        assert [construct for construct in loading if construct in text] == []
         assert all(source.startswith("figures/") for source in read[name].places["src"])
         assert '<meta name="viewport" content="width=device-width, initial-scale=1">' in text
 
@@ -127,7 +127,7 @@ def test_every_claim_is_once_on_both_pages_and_in_the_list(data, read, listed):
             expected[claim["claim"]] = claim["verdict"]
             for name in ("index.html", "claims.html"):
                 assert read[name].texts.count(said) == 1
-            assert all(each in read["claims.html"].texts for each in claim["senses"])
+            assert all(sense in read["claims.html"].texts for sense in claim["senses"])
     # Claims of one's own are in the list, too.
     for claim in judgements.claims_of(data["claims"], "own claim"):
         expected[claim["claim"]] = claim["verdict"]
@@ -199,10 +199,10 @@ def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):
     new = claims.isel(claim=[0]).assign_coords(claim=["new"]).assign(beside=("claim", ["fig17"]))
     every = data | {"fig17": data["fig14"], "claims": xr.concat([claims, new], "claim")}
     text = index.list_of_figures("html", every, ENTRIES | {"fig17": entry})
-    found = Page(text[text.index('<section id="fig17"') : text.index("</main>")])
-    assert "Figure 17: <another>" in found.texts
-    assert found.places["alt"][0] == "Figure 17" and "Another & more." in found.texts
-    assert claims.statement[0].item() in found.texts
+    section = Page(text[text.index('<section id="fig17"') : text.index("</main>")])
+    assert "Figure 17: <another>" in section.texts
+    assert section.places["alt"][0] == "Figure 17" and "Another & more." in section.texts
+    assert claims.statement[0].item() in section.texts
 
 
 def test_a_claim_that_this_run_cannot_judge_says_why(data, read):
@@ -256,7 +256,7 @@ def test_the_number_of_an_equation_stays_with_its_formula(texts):
     units = re.findall(r'<span class="numbered">(.*?)</span>', texts["paper.html"])
     numbers = [re.findall(r"\((?:Eqs?\W|R\d)", unit) for unit in units]
     assert max(map(len, numbers)) == 1 and sum(map(len, numbers)) > 9
-    alone = [unit for unit, found in zip(units, numbers, strict=True) if found]
+    alone = [unit for unit, equations in zip(units, numbers, strict=True) if equations]
     assert all(unit.count("<math") == 2 for unit in alone)
 
 

@@ -211,9 +211,9 @@ def test_branches_have_the_special_points_of_each_contact_and_nothing_else():
         expected.sort(reverse=True)
         assert kinds == [kind for _, kind in expected]
         special = branch.isel(special=slice(count))
-        found = special.special_contact_duration.values
-        assert found == pytest.approx([duration for duration, _ in expected], abs=1e-8)
-        amplitudes = independent.orbit(*at, found)[0]
+        special_durations = special.special_contact_duration.values
+        assert special_durations == pytest.approx([duration for duration, _ in expected], abs=1e-8)
+        amplitudes = independent.orbit(*at, special_durations)[0]
         assert special.special_amplitude.values == pytest.approx(amplitudes, abs=1e-8)
         assert np.isnan(branch.special_amplitude.values[count:]).all()
         # The multipliers of each orbit have the sum and the product of its monodromy matrix.
@@ -274,8 +274,8 @@ def end_of_range(n, ratio, zeta, release, bound):
     orbits = [independent.orbit(n, ratio, zeta, release, duration) for duration in durations]
     # The phase of this period doubling is positive.
     lowest = (-np.pi / 2, 0)[k]
-    (found,) = (y for y in orbits if lowest < y[1] < np.pi / 2 and y[2] < 0)
-    return found
+    (orbit,) = (y for y in orbits if lowest < y[1] < np.pi / 2 and y[2] < 0)
+    return orbit
 
 
 def test_table_1_has_the_bifurcations_of_the_closed_form_and_the_printed_ends():
@@ -380,9 +380,9 @@ def test_figure_14_has_the_heights_of_the_closed_form_and_the_threshold_of_their
             assert float(point[quantity]) == pytest.approx(expected[quantity], abs=ORBITS * ratio)
         error = abs(expected["max_height"] / highest - 1)
         assert float(point.relative_error) == pytest.approx(error, abs=ORBITS * ratio)
-    found = float(data.error_threshold)
+    threshold = float(data.error_threshold)
     zeta = independent.restitution_to_damping(r)
-    assert error_of_the_height(found, r, zeta) == pytest.approx(given["tolerance"], abs=1e-9)
+    assert error_of_the_height(threshold, r, zeta) == pytest.approx(given["tolerance"], abs=1e-9)
     assert data.threshold_status == "found"
 
 
@@ -395,9 +395,9 @@ def error_of_the_height(ratio, r, zeta):
     def excess(duration):
         return independent.orbit(1, ratio, zeta, "displacement", duration)[0] - 1
 
-    found = independent.roots(excess, half * np.linspace(0.97, 1.03, 61))
-    orbits = [independent.orbit(1, ratio, zeta, "displacement", each) for each in found]
-    (y,) = (each for each in orbits if 0 < each[1] < np.pi / 2 and each[2] < 0)
+    durations = independent.roots(excess, half * np.linspace(0.97, 1.03, 61))
+    orbits = [independent.orbit(1, ratio, zeta, "displacement", duration) for duration in durations]
+    (y,) = (orbit for orbit in orbits if 0 < orbit[1] < np.pi / 2 and orbit[2] < 0)
     moved = independent.cycle(ratio, zeta, "displacement", y[0], y[1], y[2])
     return abs(moved.greatest_height() / highest - 1)
 
@@ -408,21 +408,21 @@ def test_each_threshold_is_the_last_crossing_of_its_error_and_of_its_tolerance()
     given = registered("error_thresholds", "thresholds", **changes)
     data = error_thresholds.STAGE["thresholds"](given, "displacement")
     assert data.quantity.values.tolist() == given["quantities"]
-    found = data.error_threshold.where(data.threshold_status == "found")
-    assert int(found.notnull().sum()) > 10
+    thresholds = data.error_threshold.where(data.threshold_status == "found")
+    assert int(thresholds.notnull().sum()) > 10
     beyond = data.relative_error > data.tolerance
     last = data.frequency_ratio.where(beyond).max("frequency_ratio")
     # It lies between the last ratio of the scan at which the error is too large and the next one.
     step = 1e4 ** (1 / 12)
-    inside = (found >= last) & (found <= last * step)
-    assert inside.where(found.notnull(), True).all()
+    inside = (thresholds >= last) & (thresholds <= last * step)
+    assert inside.where(thresholds.notnull(), True).all()
     # The error is within the tolerance everywhere without such a ratio.
     assert ((data.threshold_status == "within") == last.isnull()).all()
     zeta = independent.restitution_to_damping(given["restitution"])
-    resting = found.sel(quantity="permanent_contact").dropna("tolerance")
+    resting = thresholds.sel(quantity="permanent_contact").dropna("tolerance")
     at = threshold_of_permanent_contact(resting.values, zeta, "displacement")
     assert abs(at - 1) == pytest.approx(resting.tolerance.values)
-    height = float(found.sel({"quantity": "max_height", "tolerance": 0.01}))
+    height = float(thresholds.sel({"quantity": "max_height", "tolerance": 0.01}))
     assert height == pytest.approx(float(reference()["fig14"].error_threshold), rel=1e-9)
 
 
@@ -529,11 +529,11 @@ def hypotheses():
 )
 def test_a_hypothesis_has_the_bifurcations_of_its_release(hypotheses, hypothesis, release):
     zeta = independent.restitution_to_damping(0.85)
-    found = hypotheses.found.sel(hypothesis=hypothesis)
+    numbers = hypotheses.found.sel(hypothesis=hypothesis)
     for n in (1, 2):
         for ratio in (10.0, 2.0):
             expected = end_of_range(n, ratio, zeta, release, "saddle-node")[0]
-            end = found.sel(number=f"Table 1: {ratio:g}, {n}, saddle-node")
+            end = numbers.sel(number=f"Table 1: {ratio:g}, {n}, saddle-node")
             assert float(end) == pytest.approx(expected, abs=1e-9)
 
 
@@ -546,8 +546,8 @@ def test_the_numbers_of_a_hypothesis_are_those_of_its_contact(hypotheses):
     judged = reference()["claims"].set_index(claim="claim")
     plain = hypotheses.sel(hypothesis="equations as they stand")
     for name in hypotheses.number.values:
-        found = float(judged.found.sel(claim=name))
-        assert float(plain.found.sel(number=name)) == pytest.approx(found, rel=1e-8)
+        number = float(judged.found.sel(claim=name))
+        assert float(plain.found.sel(number=name)) == pytest.approx(number, rel=1e-8)
         # Its row of Table 1, which its name has as text.
         row = float(hypotheses.row.sel(number=name))
         assert np.isnan(row) or name.startswith(f"Table 1: {row:g},")
@@ -565,7 +565,7 @@ def test_hypotheses_are_in_the_order_of_the_numbers_that_they_reproduce(hypothes
     for k in range(hypotheses.sizes["hypothesis"]):
         line = hypotheses.isel(hypothesis=k)
         pairs = zip(line.found.values, printed, strict=True)
-        verdicts = [against_print(found, text).verdict for found, text in pairs]
+        verdicts = [against_print(number, text).verdict for number, text in pairs]
         assert int(line.reproduced) == verdicts.count("reproduced")
         assert (line.agrees == [verdict == "reproduced" for verdict in verdicts]).all()
     assert (hypotheses.reproduced.diff("hypothesis") <= 0).all()
@@ -603,8 +603,8 @@ def test_the_quantities_of_the_configuration_are_those_that_are_computed_and_nam
     allowed = given["quantities"]["items"]["enum"]
     of_orbits = schema["properties"]["validity"]["properties"]["regimes"]["properties"]["quantity"]
     assert of_orbits["enum"] == [*errors.COMPARED]
-    found = errors.errors(allowed, 1, 0.65, 1.0, np.array([50.0, 100.0]), "displacement")
-    assert [*found] == allowed
+    by_quantity = errors.errors(allowed, 1, 0.65, 1.0, np.array([50.0, 100.0]), "displacement")
+    assert [*by_quantity] == allowed
     assert {*allowed, *errors.COMPARED} == {*QUANTITIES}
 
 
@@ -637,8 +637,8 @@ def test_the_failures_of_known_errors():
     # The integral of ln²(0.3/r) from 0.3/e to 0.3, and 1 below.
     assert mean[0, 0] == pytest.approx((0.3 * (2 - 5 / np.e) + 0.3 / np.e - 0.1) / 0.7, abs=1e-4)
     assert largest[0, 0] == pytest.approx(0.01 * (1 + np.log(3)), rel=1e-9)
-    for each in (share, mean, up_to, largest):
-        assert np.isnan(each[1]).all()
+    for measure in (share, mean, up_to, largest):
+        assert np.isnan(measure[1]).all()
     # Stability ends at the place 0.1 below r = 0.3/e, where every place failed.
     share, mean, _, _ = failures(errors[:1], r, place, np.full((1, r.size), 0.1), 0.01)
     assert share[0, 0] == pytest.approx(np.minimum(exact, 0.1), abs=1e-4)
@@ -753,7 +753,7 @@ def test_below_the_saddle_node_of_the_simple_model_a_stiff_contact_has_a_stable_
     if (n, r) == (3, 0.05):
         assert (node[0], x) == pytest.approx((8.50199, 8.52718), abs=5e-6)
     (duration,) = independent.roots(
-        lambda each: independent.orbit(n, 100.0, zeta, "displacement", each)[0] - amplitude,
+        lambda duration: independent.orbit(n, 100.0, zeta, "displacement", duration)[0] - amplitude,
         np.linspace(0.9 * half, node[3] / 100, 400),
     )[-1:]
     y = independent.orbit(n, 100.0, zeta, "displacement", duration)

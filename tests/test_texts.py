@@ -43,19 +43,19 @@ def numbers_of_readme() -> set[str]:
     data = reference()
     judged = judgements.claims_of(data["claims"], "printed number")
     ends = [claim for claim in judged if claim["item"] == "Table 1"]
-    found = data["validity_map"]
-    height = found.sel(quantity="summit")
+    validity_map = data["validity_map"]
+    height = validity_map.sel(quantity="summit")
     return {
         texts.fixed(data["fig14"].error_threshold, 2),
         texts.fixed(data["fig16"].error_threshold, 2),
         texts.fixed(max(abs(end["deviation_units"]) for end in ends), 2),
         texts.fixed(100 * height.largest_error.max(), 2),
-        *(texts.fixed(100 * share, 1) for share in found.doubled_mean),
-        *(texts.fixed(100 * share, 1) for share in found.below_mean),
+        *(texts.fixed(100 * share, 1) for share in validity_map.doubled_mean),
+        *(texts.fixed(100 * share, 1) for share in validity_map.below_mean),
         texts.fixed(height.failing_up_to.max(), 2),
         *(texts.share_text(mean).strip("< %") for mean in height.failing_mean.values if mean > 0),
-        f"{found.restitution.min():g}",
-        f"{found.restitution.max():g}",
+        f"{validity_map.restitution.min():g}",
+        f"{validity_map.restitution.max():g}",
     }
 
 
@@ -65,7 +65,7 @@ def test_decimal_numbers_of_readme_are_those_of_the_datasets():
     typed = set(re.findall(r"(?<![\w.])\d+\.\d+(?![\w.]*\d)", prose))
     computed = numbers_of_readme()
     assert computed - typed == set()
-    assert typed - computed <= {str(each) for each in parameters(reference()["fig12"]).values()}
+    assert typed - computed <= {str(value) for value in parameters(reference()["fig12"]).values()}
 
 
 def test_counts_of_readme_are_those_of_the_datasets():
@@ -108,18 +108,18 @@ def test_the_table_of_your_ball_has_measured_times_where_the_ball_arrives_with_t
     measured = row.findall(page)
     for file, *typed in measured:
         times = re.findall(r"# contact time.*: (\S+) s", text(f"docs/{file}"))
-        assert [f"{1e3 * float(each):.3g}" for each in times] == typed
+        assert [f"{1e3 * float(time):.3g}" for time in times] == typed
     rows = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")][2:]
     assert (len(measured), len(rows)) == (2, 4)
     for ball, *cells in rows:
-        numbers = [[float(each) for each in re.findall(r"\d[\d.]*", cell)] for cell in cells]
+        numbers = [[float(number) for number in re.findall(r"\d[\d.]*", cell)] for cell in cells]
         (r, *_), (milliseconds, *_), frequency, ratio = numbers
-        speeds = [float(each) for each in re.findall(r"[\d.]+", ball.rpartition(" at ")[2])]
-        found = np.array([9.80665 / ((1 + r) * speed) for speed in speeds])
-        assert two_digits(found) == sorted(frequency)
+        speeds = [float(speed) for speed in re.findall(r"[\d.]+", ball.rpartition(" at ")[2])]
+        frequencies = np.array([9.80665 / ((1 + r) * speed) for speed in speeds])
+        assert two_digits(frequencies) == sorted(frequency)
         if "Hertz" in cells[1]:
             continue  # the contact of the next test pulls
-        contact = contact_of_duration(2e-3 * np.pi * found * milliseconds, r, "force")
+        contact = contact_of_duration(2e-3 * np.pi * frequencies * milliseconds, r, "force")
         assert two_digits(contact.frequency_ratio) == sorted(ratio)
 
 
@@ -166,7 +166,9 @@ def test_how_long_contacts_last_depends_on_r_law_and_release():
     tsuji, kuwabara_kono, hunt_crossley = (lambda x: x**0.25), np.sqrt, (lambda x: x**1.5)
     pulling = damped_duration(tsuji, 0.7, "displacement") / elastic
     ended = [damped_duration(law, 0.7, "force") for law in (tsuji, kuwabara_kono, hunt_crossley)]
-    changes = [round(100 * float(each)) for each in [pulling - 1, *(np.array(ended) / elastic - 1)]]
+    changes = [
+        round(100 * float(change)) for change in [pulling - 1, *(np.array(ended) / elastic - 1)]
+    ]
     typed = re.findall(r"(adds|takes off) (\d+) %", page)
     assert changes == [int(number) * (1 if does == "adds" else -1) for does, number in typed]
     # The steel ball, at the speed of its orbit: the table, and the picture at 1/200 of the period.
@@ -181,17 +183,17 @@ def test_how_long_contacts_last_depends_on_r_law_and_release():
 def test_the_journal_accepts_the_metadata():
     """Its converter measures addresses, LaTeX reads the texts, and an abstract has 250 words."""
     metadata = yaml.safe_load(text("metadata.yaml"))
-    assert all(isinstance(each["address"], str) for each in metadata["affiliations"])
+    assert all(isinstance(affiliation["address"], str) for affiliation in metadata["affiliations"])
     assert re.findall(r"(?<!\\)[%&#]", " ".join(map(str, metadata.values()))) == []
     article = words("paper.md").partition("## Abstract ")[2].partition(" ## ")[0]
     assert len(article.split()) <= 250 and "Section" not in article
     tex = {"%": r"\%", "ϖ": r"$\varpi$", "Λ": r"$\Lambda$", "≈": r"$\approx$"}
-    assert metadata["abstract"].strip() == re.sub("[%ϖΛ≈]", lambda each: tex[each[0]], article)
+    assert metadata["abstract"].strip() == re.sub("[%ϖΛ≈]", lambda match: tex[match[0]], article)
 
 
 def test_the_authors_are_the_same_everywhere():
     names = [author["name"] for author in yaml.safe_load(text("metadata.yaml"))["authors"]]
-    assert [each["name"] for each in yaml.safe_load(text("CITATION.cff"))["authors"]] == names
+    assert [author["name"] for author in yaml.safe_load(text("CITATION.cff"))["authors"]] == names
     assert f"\n\n{texts.listed(names)}.\n" in text("paper.md")
 
 
@@ -217,11 +219,15 @@ def test_links_pictures_and_files_that_are_named_exist(page):
     # Texts of a run link to its figures, and to pages of the checkout. A new figure is not in the
     # reference yet.
     folders = [(top / page).parent for top in (TOP, ROOT)]
-    missing = [each for each in local if not any((folder / each).exists() for folder in folders)]
+    missing = [
+        target for target in local if not any((folder / target).exists() for folder in folders)
+    ]
     beyond = yaml.safe_load(text("extras/beyond/config/config.yaml"))
     made = (ROOT / "extras/beyond/workflow/templates").glob("*.md.j2")
     new = {*ENTRIES, *entries(beyond), *(path.name.partition(".")[0] for path in made)}
-    assert [each for each in missing if each.rpartition("/")[2].partition(".")[0] not in new] == []
+    assert [
+        target for target in missing if target.rpartition("/")[2].partition(".")[0] not in new
+    ] == []
     named = re.findall(r"`((?:workflow|src|config|tests|docs|\.ci)/[\w./-]+)`", content)
     assert [file for file in named if not (ROOT / file).exists()] == []
 
@@ -229,8 +235,8 @@ def test_links_pictures_and_files_that_are_named_exist(page):
 @pytest.mark.parametrize("page", [page for page in PAGES if ">>> " in text(page)])
 def test_examples_of_the_pages_run(page, monkeypatch):
     monkeypatch.chdir((ROOT / page).parent)
-    found = doctest.testfile(str(ROOT / page), module_relative=False, encoding="utf-8")
-    assert found.failed == 0
+    examples = doctest.testfile(str(ROOT / page), module_relative=False, encoding="utf-8")
+    assert examples.failed == 0
 
 
 @pytest.mark.parametrize("page", ["docs/chapter.md", "docs/recipes.md"])

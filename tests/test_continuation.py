@@ -85,9 +85,9 @@ def test_a_branch_is_that_of_the_closed_form(n, ratio, r, release, amplitude_max
 
         expected += [(angle, kind) for angle in independent.roots(test_function, grid)]
     expected.sort(reverse=True)
-    found = [special for special in branch.special if special.kind != "grazing"]
-    assert [special.kind for special in found] == [kind for _, kind in expected]
-    for special, (angle, _) in zip(found, expected, strict=True):
+    bifurcations = [special for special in branch.special if special.kind != "grazing"]
+    assert [special.kind for special in bifurcations] == [kind for _, kind in expected]
+    for special, (angle, _) in zip(bifurcations, expected, strict=True):
         amplitude = independent.orbit(n, ratio, zeta, release, angle / ratio)[0]
         # Test functions have ten digits, and change of Λ with θ does not exceed ϖ.
         assert special.orbit[0] == pytest.approx(amplitude, rel=1e-9)
@@ -108,9 +108,9 @@ def test_the_special_points_of_figure_8():
     """At ϖ = 2 the family turns twice and ends where permanent contact does."""
     zeta = damping_ratio(0.85)
     branch = continuation.branch(Family(1, Contact(2.0, zeta)), 1.3, 20)
-    found = [(special.kind, round(float(special.orbit[0]), 8)) for special in branch.special]
+    points = [(special.kind, round(float(special.orbit[0]), 8)) for special in branch.special]
     # Known from computations with other methods and more digits.
-    assert found == [
+    assert points == [
         ("period doubling", 1.09552888),
         ("period doubling", 1.16252707),
         ("saddle-node", 1.1763248),
@@ -138,7 +138,7 @@ def test_a_ball_near_an_orbit_of_a_long_contact_stays_there(r, ratio, first, las
     y = family.of_duration(np.array([duration.mean()]))
     again = continuation.correct(family, y * (1 + 1e-4), continuation.at_amplitude(y[0]))
     np.testing.assert_allclose(again, y, rtol=1e-7)
-    size, phase, velocity = (each.item() for each in y[:3])
+    size, phase, velocity = (unknown.item() for unknown in y[:3])
     distances = []
     landing = phase
     speed = velocity + 1e-5
@@ -184,12 +184,12 @@ def test_the_points_of_a_branch_do_not_depend_on_the_steps(n, ratio, release, am
 def test_the_period_doubling_of_an_undamped_contact_is_known(n, ratio, expected):
     beside = ratio if ratio != 1 else 1 + 1e-9
     formula = abs(1 - 1 / beside**2) / abs(np.cos(np.pi / (2 * beside)))
-    found = continuation.bifurcations(n, "period doubling", Contact(ratio, 0.0))
+    doubling = continuation.bifurcations(n, "period doubling", Contact(ratio, 0.0))
     # Both factors vanish at ϖ = 1, beside which the formula has seven digits.
-    assert found[0, 0, 0] == pytest.approx(formula, rel=1e-10 if ratio != 1 else 1e-6)
+    assert doubling[0, 0, 0] == pytest.approx(formula, rel=1e-10 if ratio != 1 else 1e-6)
     if expected is not None:
         # Half a unit of the last digit that is known.
-        assert found[0, 0, 0] == pytest.approx(expected, abs=5e-9)
+        assert doubling[0, 0, 0] == pytest.approx(expected, abs=5e-9)
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,9 @@ def test_the_period_doubling_of_an_undamped_contact_is_known(n, ratio, expected)
 def test_the_branch_of_an_undamped_contact_has_its_period_doubling(n, ratio, amplitude_max):
     branch = continuation.branch(Family(n, Contact(ratio, 0.0)), amplitude_max, 40)
     known = continuation.bifurcations(n, "period doubling", Contact(ratio, 0.0))[0, 0, 0]
-    doublings = [each.orbit[0] for each in branch.special if each.kind == "period doubling"]
+    doublings = [
+        special.orbit[0] for special in branch.special if special.kind == "period doubling"
+    ]
     assert known == pytest.approx(doublings[-1], rel=1e-9)
     assert_on_closed_form(n, ratio, 0.0, "displacement", branch.orbits)
     assert branch.ends[0] == (MERGES if ratio <= 1 else continuation.VANISHES)
@@ -212,17 +214,19 @@ def test_bifurcations_along_the_frequency_ratio_are_those_of_the_closed_form(rel
     zeta = independent.restitution_to_damping(r)
     ratios = np.array([1.3, 7.77, 431.0, 1e4])
     contact = Contact(ratios, zeta, release)
-    found = {kind: continuation.bifurcations(n, kind, contact) for kind in continuation.SPECIAL[:2]}
+    bifurcations = {
+        kind: continuation.bifurcations(n, kind, contact) for kind in continuation.SPECIAL[:2]
+    }
     for i in range(3):
         for j, ratio in enumerate(ratios):
             for k, kind in enumerate(continuation.SPECIAL[:2]):
-                y = found[kind][:, i, j]
+                y = bifurcations[kind][:, i, j]
                 assert_on_closed_form(n[i], ratio, zeta, release, y)
                 values = independent.test_functions(n[i], ratio, zeta, release, y[3] / ratio)
                 # The corrector's tolerance, times the slopes of the test functions along θ.
                 assert values[k] == pytest.approx(0, abs=1e-9 * ratio)
             # What they bound is stable in between.
-            ends = [found[kind][3, i, j] for kind in ("period doubling", "saddle-node")]
+            ends = [bifurcations[kind][3, i, j] for kind in ("period doubling", "saddle-node")]
             inside = np.linspace(*ends, 50)[1:-1] / ratio
             assert ends[0] < ends[1]
             assert np.min(independent.test_functions(n[i], ratio, zeta, release, inside)) > 0
@@ -276,14 +280,14 @@ def test_a_walk_along_the_frequency_ratio_follows_the_stable_orbits(release):
     r = np.array([smallest, 0.65, 0.85, 0.999])
     amplitude = 1.01 * restitution.saddle_node(2, r) + np.array([0.4, 0.4, 0.8, 0.5])
     ratios = np.array([1.9, 2.0, 3.33, 50.0, 1e3, 1e6])
-    found = continuation.upper_orbits(2, r, amplitude, ratios, release)
-    assert found.shape == (4, 4, 6)
-    np.testing.assert_allclose(found[0], np.outer(amplitude, np.ones(6)), rtol=CORRECTOR)
+    orbits = continuation.upper_orbits(2, r, amplitude, ratios, release)
+    assert orbits.shape == (4, 4, 6)
+    np.testing.assert_allclose(orbits[0], np.outer(amplitude, np.ones(6)), rtol=CORRECTOR)
     for i in range(4):
         zeta = independent.restitution_to_damping(r[i], release)
         for j, ratio in enumerate(ratios):
-            assert_on_closed_form(2, ratio, zeta, release, found[:, i, j])
-            duration = found[3, i, j] / ratio
+            assert_on_closed_form(2, ratio, zeta, release, orbits[:, i, j])
+            duration = orbits[3, i, j] / ratio
             saddle_node, _ = independent.test_functions(2, ratio, zeta, release, duration)
             assert saddle_node > 0
 
@@ -295,8 +299,8 @@ def test_where_there_is_no_orbit_there_is_none():
     zeta = independent.restitution_to_damping(0.65)
     durations = np.linspace(2, 4.5, 400) / ratios[:, np.newaxis]
     lowest = [
-        np.min(independent.orbit(5, ratio, zeta, "displacement", each)[0])
-        for ratio, each in zip(ratios, durations, strict=True)
+        np.min(independent.orbit(5, ratio, zeta, "displacement", row)[0])
+        for ratio, row in zip(ratios, durations, strict=True)
     ]
     np.testing.assert_array_equal(np.isnan(y), np.array(lowest) > 3.5)
     assert np.isnan(y).sum() == 2
@@ -305,9 +309,9 @@ def test_where_there_is_no_orbit_there_is_none():
 
 
 def test_below_the_saddle_node_of_the_restitution_model_there_is_no_orbit():
-    found = continuation.upper_orbits(1, 0.85, [0.3, 0.25], [10.0])
-    assert np.isfinite(found[:, 0]).all()
-    assert np.isnan(found[:, 1]).all()
+    orbits = continuation.upper_orbits(1, 0.85, [0.3, 0.25], [10.0])
+    assert np.isfinite(orbits[:, 0]).all()
+    assert np.isnan(orbits[:, 1]).all()
     message = r"1-T orbits on stiff contacts need Λ >= 0.254724 \(Eq. 7 .* r = 0.85\).* Λ is 0.25: "
     with pytest.raises(NoOrbit, match=message):
         continuation.upper_orbits(1, 0.85, [0.2, 0.25], [10.0])

@@ -25,11 +25,11 @@ def test_a_threshold_is_the_last_crossing_of_the_tolerance():
         return 0.1 + 1e-3 * (2 - ratio) * (5 - ratio) * (20 - ratio) / ratio**2
 
     grid = np.linspace(1.3, 31.3, 31)
-    found = errors.threshold(
+    threshold = errors.threshold(
         grid, Error(error(grid), lambda ratio, below, curve: error(ratio)), 0.1
     )
-    assert found.status == "found"
-    assert found.ratio == pytest.approx(20, rel=1e-12)
+    assert threshold.status == "found"
+    assert threshold.ratio == pytest.approx(20, rel=1e-12)
     # A ratio at which the error is the tolerance is within it.
     exact = Error(1 / grid, lambda ratio, below, curve: 1 / ratio)
     assert errors.threshold(grid, exact, 1 / grid[10]).ratio == pytest.approx(grid[10], rel=1e-12)
@@ -39,9 +39,9 @@ def test_a_threshold_outside_of_the_scan_has_a_status():
     grid = np.array([1.0, 2.0, 3.0])
 
     def status(*values):
-        found = errors.threshold(grid, Error(np.array(values), None), 0.1)
-        assert np.isnan(found.ratio)
-        return found.status
+        threshold = errors.threshold(grid, Error(np.array(values), None), 0.1)
+        assert np.isnan(threshold.ratio)
+        return threshold.status
 
     assert status(0.1, 0.05, 0.02) == "within"
     assert status(0.01, 0.05, 0.2) == "exceeded"
@@ -54,11 +54,11 @@ def test_a_threshold_outside_of_the_scan_has_a_status():
 def test_the_threshold_of_permanent_contact_is_that_of_equation_34():
     zeta = float(damping_ratio(0.65))
     error = errors.permanent_contact_error(RATIOS, zeta, "displacement")
-    found = errors.threshold(RATIOS, error, 0.01)
+    threshold = errors.threshold(RATIOS, error, 0.01)
     expected = permanent_contact_ratios(0.99, zeta)[1]
     assert round(expected, 4) == 9.8118
     # The error is the difference of two numbers near 1, and falls with the square of ϖ.
-    assert found.ratio == pytest.approx(expected, rel=1e-12)
+    assert threshold.ratio == pytest.approx(expected, rel=1e-12)
     forced = errors.threshold(
         RATIOS, errors.permanent_contact_error(RATIOS, zeta, "force"), 0.01
     ).ratio
@@ -118,53 +118,55 @@ KNOWN = {
 @pytest.fixture(scope="module")
 def known_errors():
     names = [*KNOWN, "permanent_contact"]
-    found = errors.errors(names, 1, 0.65, 1.0, RATIOS, "displacement")
-    assert list(found) == names
-    return found
+    by_quantity = errors.errors(names, 1, 0.65, 1.0, RATIOS, "displacement")
+    assert list(by_quantity) == names
+    return by_quantity
 
 
 @pytest.mark.parametrize("name", KNOWN)
 def test_known_thresholds(known_errors, name):
-    found = errors.threshold(RATIOS, known_errors[name], 0.01)
+    threshold = errors.threshold(RATIOS, known_errors[name], 0.01)
     digits = len(f"{KNOWN[name]}".partition(".")[2])
-    assert round(found.ratio, digits) == KNOWN[name]
-    assert found.status == "found"
+    assert round(threshold.ratio, digits) == KNOWN[name]
+    assert threshold.status == "found"
     if name in ("saddle_node", "period_doubling"):
         zeta = independent.restitution_to_damping(0.65)
         k = ("saddle_node", "period_doubling").index(name)
         (angle,) = independent.roots(
             lambda angle: independent.test_functions(
-                1, found.ratio, zeta, "displacement", angle / found.ratio
+                1, threshold.ratio, zeta, "displacement", angle / threshold.ratio
             )[k],
             np.linspace(2.9, 3.4, 50),
         )
-        amplitude = independent.orbit(1, found.ratio, zeta, "displacement", angle / found.ratio)[0]
+        amplitude = independent.orbit(
+            1, threshold.ratio, zeta, "displacement", angle / threshold.ratio
+        )[0]
         limit = {
             "saddle_node": restitution.saddle_node(1, 0.65),
             "period_doubling": restitution.period_doubling(1, 0.65),
         }
         error = abs(amplitude / limit[name] - 1)
     else:
-        error = quantities(1, 0.65, 1.0, found.ratio, "displacement")[name]
+        error = quantities(1, 0.65, 1.0, threshold.ratio, "displacement")[name]
     # The corrector's tolerance of 1e-11 in Λ is one of some ϖ in the error times 1e-11.
     assert error == pytest.approx(0.01, rel=1e-7)
 
 
 def test_permanent_contact_needs_no_orbit():
     # There is no orbit with this amplitude.
-    found = errors.errors(["permanent_contact"], 1, 0.65, 0.1, RATIOS, "displacement")
-    assert list(found) == ["permanent_contact"]
+    by_quantity = errors.errors(["permanent_contact"], 1, 0.65, 0.1, RATIOS, "displacement")
+    assert list(by_quantity) == ["permanent_contact"]
 
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_dense_scan_has_the_same_errors_and_threshold(release):
     n, r, amplitude = 2, 0.85, 1.0
     coarse = np.geomspace(20, 200, 5)
-    found = errors.errors(list(KNOWN)[:4], n, r, amplitude, coarse, release)
+    by_quantity = errors.errors(list(KNOWN)[:4], n, r, amplitude, coarse, release)
     expected = {
         ratio: quantities(n, r, amplitude, ratio, release) for ratio in np.geomspace(20, 200, 17)
     }
-    for name, error in found.items():
+    for name, error in by_quantity.items():
         for i, ratio in enumerate(coarse):
             # The errors are differences of numbers that are known to 1e-11 times ϖ.
             assert error.values[i] == pytest.approx(expected[ratio][name], abs=1e-8)
@@ -174,12 +176,12 @@ def test_a_dense_scan_has_the_same_errors_and_threshold(release):
                     expected[ratio][name], abs=1e-8
                 )
     scan = list(expected)
-    threshold = errors.threshold(coarse, found["max_height"], 0.01).ratio
+    threshold = errors.threshold(coarse, by_quantity["max_height"], 0.01).ratio
     # The same root by a method for one curve, in the interval that the scan encloses.
-    below = int(np.flatnonzero(found["max_height"].values > 0.01)[-1])
+    below = int(np.flatnonzero(by_quantity["max_height"].values > 0.01)[-1])
 
     def excess(ratio):
-        return float(found["max_height"].between(ratio, below, 0)) - 0.01
+        return float(by_quantity["max_height"].between(ratio, below, 0)) - 0.01
 
     # The orbits are known to about 1e-12.
     assert threshold == pytest.approx(brentq(excess, *coarse[below : below + 2]), rel=1e-10)
@@ -202,18 +204,18 @@ def test_a_dense_scan_has_the_same_errors_and_threshold(release):
     ],
 )
 def test_without_a_stable_orbit_the_error_is_one_line(n, r, amplitude, ratio, release, message):
-    with pytest.raises(NoOrbit, match=message) as found:
+    with pytest.raises(NoOrbit, match=message) as raised:
         errors.errors(["max_height"], n, r, amplitude, np.array([ratio]), release)
-    assert "\n" not in str(found.value)
+    assert "\n" not in str(raised.value)
 
 
 def test_an_error_is_infinite_where_the_contact_has_no_stable_orbit():
     """At ϖ = 100 the period has doubled at Λ = 1.2375, on the stiffer contact at 1.2394."""
     ratios = np.array([100.0, 1e4])
-    found = errors.errors(
+    by_quantity = errors.errors(
         ["max_height", "phase_in_periods"], 1, 0.65, 1.239, ratios, "displacement"
     )
-    for error in found.values():
+    for error in by_quantity.values():
         assert np.isinf(error.values[0]) and error.values[1] < 1e-4
         assert error.admissible.tolist() == [False, True]
     with pytest.raises(NoOrbit):
@@ -226,9 +228,9 @@ def test_the_error_by_hand_is_that_of_the_stable_orbits_of_its_domain(release, r
     """docs/your-ball.md: r ≥ 0.5, n ≤ 6, ϖ ≥ 3, positions from 0.1 to 1 - 1.1 n/ϖ."""
     sizes = [1, 2, 3, 4, 5, 6]
     parts = np.linspace(0, 1, 7)
-    n, r, part = (each.reshape(-1, 1) for each in np.meshgrid(sizes, 0.5 + 0.499 * parts, parts))
+    n, r, part = (grid.reshape(-1, 1) for grid in np.meshgrid(sizes, 0.5 + 0.499 * parts, parts))
     last = 1 - 1.1 * n / ratio
-    n, r, part, last = (each[last > 0.1].reshape(-1, 1) for each in (n, r, part, last))
+    n, r, part, last = (column[last > 0.1].reshape(-1, 1) for column in (n, r, part, last))
     x = restitution.saddle_node(n, r)
     position = 0.1 + part * (last - 0.1)
     amplitude = x + position * (restitution.period_doubling(n, r) - x)
@@ -244,7 +246,7 @@ def test_the_error_by_hand_is_that_of_the_stable_orbits_of_its_domain(release, r
 def test_contacts_on_stiff_orbits_last_as_long_as_free_impacts(release, least):
     """Within 0.7 % at ϖ = 100, as docs/your-ball.md says beside its formula for a duration."""
     mesh = np.meshgrid([1, 2, 3], np.linspace(least, 0.95, 7), [0, 0.01, 0.3, 1], indexing="ij")
-    n, r, place = (each.reshape(-1, 1) for each in mesh)
+    n, r, place = (grid.reshape(-1, 1) for grid in mesh)
     first = restitution.saddle_node(n, r)
     amplitude = first + place * (restitution.period_doubling(n, r) - first)
     zeta = damping_ratio(r, release)
@@ -260,8 +262,8 @@ def test_the_error_of_the_height_of_elastic_impacts_is_that_of_half_a_contact(n)
     amplitude = 0.5
     impact_height = amplitude * np.sin(restitution.impact_phase(n, r, amplitude))
     ratios = np.array([1e3, 2e3])
-    found = errors.errors(["max_height"], n, r, amplitude, ratios, "displacement")["max_height"]
-    first, second = n * ratios * found.values
+    error = errors.errors(["max_height"], n, r, amplitude, ratios, "displacement")["max_height"]
+    first, second = n * ratios * error.values
     # Extrapolation takes the next order in 1/ϖ away, and leaves 1 - r and the square, 1e-6.
     expected = 1 / (1 + 2 * impact_height / (n * np.pi) ** 2)
     assert 2 * second - first == pytest.approx(expected, abs=2e-5)
@@ -270,8 +272,10 @@ def test_the_error_of_the_height_of_elastic_impacts_is_that_of_half_a_contact(n)
 def test_the_lowest_period_doublings():
     ratios = np.geomspace(2, 100, 41)
     r = 0.85
-    found, amplitudes = errors.lowest_period_doublings([1, 2, 3], r, ratios, "displacement")
-    np.testing.assert_allclose(found, [15.01, 8.14, 6.65], atol=0.005)
+    ratios_at_lowest, amplitudes = errors.lowest_period_doublings(
+        [1, 2, 3], r, ratios, "displacement"
+    )
+    np.testing.assert_allclose(ratios_at_lowest, [15.01, 8.14, 6.65], atol=0.005)
     zeta = independent.restitution_to_damping(r)
 
     def doubling(logarithm, n):
@@ -286,7 +290,7 @@ def test_the_lowest_period_doublings():
         )
         return independent.orbit(n, ratio, zeta, "displacement", angle / ratio)[0]
 
-    for n, ratio, amplitude in zip((1, 2, 3), found, amplitudes, strict=True):
+    for n, ratio, amplitude in zip((1, 2, 3), ratios_at_lowest, amplitudes, strict=True):
         near = np.log(ratio)
         best = minimize_scalar(
             lambda x, n=n: doubling(x, n),
@@ -332,13 +336,13 @@ def integrated_errors(n, r, amplitude, ratio, y):
     moved = independent.cycle(ratio, zeta, "displacement", amplitude, y[1], y[2])
     x = n * np.pi * (1 - r) / (1 + r)
     impact_height = np.sqrt(max(amplitude**2 - x**2, 0.0))
-    found = [
+    deviations = [
         moved.greatest_height() / (impact_height + (n * np.pi) ** 2 / 2) - 1,
         moved.bounce / (n * np.pi) - 1,
         -moved.contact.rate / (y[2] - amplitude * np.cos(y[1])) / r - 1,
         (y[1] - np.arctan2(impact_height, x)) / (2 * np.pi),
     ]
-    return np.abs(found), max(abs(moved.time - 2 * np.pi * n), abs(moved.velocity - y[2]))
+    return np.abs(deviations), max(abs(moved.time - 2 * np.pi * n), abs(moved.velocity - y[2]))
 
 
 @pytest.mark.parametrize("node", NODES)

@@ -92,11 +92,11 @@ def free_flight(p):
     t = p.flight_time / p.frequency
     start = impact_height * p.length
     speed = p.n * np.pi * p.length * p.frequency
-    found = [
+    motion = [
         restitution.height(p.n, impact_height, p.flight_time) * p.length,
         restitution.velocity(p.n, p.flight_time) * p.length * p.frequency,
     ]
-    return found, [-GRAVITY * t**2 / 2 + t * speed + start, -GRAVITY * t + speed]
+    return motion, [-GRAVITY * t**2 / 2 + t * speed + start, -GRAVITY * t + speed]
 
 
 def impact_law(p):
@@ -112,16 +112,16 @@ def velocity_before_an_impact(p):
     """ẏ⁻(t₁) = -g(t₁ - t₀) + ẏ(t₀)."""
     flight = restitution.flight_time(p.amplitude, p.phase, p.n * np.pi)
     scale = p.length * p.frequency
-    found = restitution.velocity(p.n, flight * (1 - 1e-15)) * scale
-    return found, -GRAVITY * flight / p.frequency + p.n * np.pi * scale
+    velocity = restitution.velocity(p.n, flight * (1 - 1e-15)) * scale
+    return velocity, -GRAVITY * flight / p.frequency + p.n * np.pi * scale
 
 
 def dimensionless_flight(p):
     """z = -(τ - τ₀)²/2 + (τ - τ₀)z₀′ + z₀ and z′ = -(τ - τ₀) + z₀′."""
     s = p.flight_time
     impact_height = p.amplitude * np.sin(p.phase)
-    found = [restitution.height(p.n, impact_height, s), restitution.velocity(p.n, s)]
-    return found, [-(s**2) / 2 + s * p.n * np.pi + impact_height, -s + p.n * np.pi]
+    motion = [restitution.height(p.n, impact_height, s), restitution.velocity(p.n, s)]
+    return motion, [-(s**2) / 2 + s * p.n * np.pi + impact_height, -s + p.n * np.pi]
 
 
 def iterated_map(p):
@@ -304,8 +304,8 @@ def relative_motion(p):
     """δ = z - w."""
     x, impact_height, u = p.start
     s = p.contact_time
-    found = p.family.contact.motion(s, u, x, impact_height).displacement
-    return found, p.contact_height(s) - p.y[0] * np.sin(s + p.y[1])
+    displacement = p.family.contact.motion(s, u, x, impact_height).displacement
+    return displacement, p.contact_height(s) - p.y[0] * np.sin(s + p.y[1])
 
 
 def relative_equation(p):
@@ -328,9 +328,9 @@ def steady_motion(p, sine, cosine):
     s = np.linspace(0, 5, 11)
     speed = amplitude * (sine * np.cos(begin) - cosine * np.sin(begin))
     start = amplitude * np.cos(begin), amplitude * np.sin(begin)
-    found = p.family.contact.motion(s, speed, *start).displacement
+    displacement = p.family.contact.motion(s, speed, *start).displacement
     time = begin + s
-    return found, -1 / p.ratio**2 + amplitude * (sine * np.sin(time) + cosine * np.cos(time))
+    return displacement, -1 / p.ratio**2 + amplitude * (sine * np.sin(time) + cosine * np.cos(time))
 
 
 def steady_coefficients(p):
@@ -344,10 +344,10 @@ def steady_bracket(p):
     cosine = -2 * p.zeta * p.ratio
     turn = np.linspace(0, 2 * np.pi, 100_001)
     largest = np.max(sine * np.sin(turn) + cosine * np.cos(turn))
-    found, printed = steady_motion(p, sine / p.gamma, cosine / p.gamma)
+    displacement, printed = steady_motion(p, sine / p.gamma, cosine / p.gamma)
     # Samples miss the largest value by the square of their distance, 1e-9.
     assert largest == pytest.approx(np.sqrt(p.gamma), rel=1e-8)
-    return found, printed
+    return displacement, printed
 
 
 def greatest_displacement(p):
@@ -368,8 +368,8 @@ def threshold_ratio(p, sign):
     amplitude = (1 + lowest) / 2
     middle = 1 - 2 * p.zeta**2
     root = np.sqrt(middle**2 + amplitude**2 - 1)
-    found = spring_damper.permanent_contact_ratios(amplitude, p.zeta)[1 if sign > 0 else 0]
-    return found, np.sqrt((middle + sign * root) / (1 - amplitude**2))
+    ratio = spring_damper.permanent_contact_ratios(amplitude, p.zeta)[1 if sign > 0 else 0]
+    return ratio, np.sqrt((middle + sign * root) / (1 - amplitude**2))
 
 
 def larger_threshold_ratio(p):
@@ -382,8 +382,8 @@ def smaller_threshold_ratio(p):
 
 def lowest_threshold(p):
     """Λ ≤ 2ζ√(1 - ζ²) for all ϖ."""
-    _, found = spring_damper.lowest_permanent_contact(p.zeta)
-    return found, 2 * p.zeta * np.sqrt(1 - p.zeta**2)
+    _, amplitude = spring_damper.lowest_permanent_contact(p.zeta)
+    return amplitude, 2 * p.zeta * np.sqrt(1 - p.zeta**2)
 
 
 def error_of_the_height(p):
@@ -391,17 +391,17 @@ def error_of_the_height(p):
     ratios = np.array([20.0, 60.0, 180.0, 540.0])
     reference = restitution.max_height(1, 0.65, 1.0)
     error = errors.errors(["max_height"], 1, 0.65, 1.0, ratios, "displacement")["max_height"]
-    found = errors.threshold(ratios, error, 0.01).ratio
+    ratio = errors.threshold(ratios, error, 0.01).ratio
     zeta = independent.restitution_to_damping(0.65)
     (angle,) = independent.roots(
-        lambda angle: independent.orbit(1, found, zeta, "displacement", angle / found)[0] - 1,
+        lambda angle: independent.orbit(1, ratio, zeta, "displacement", angle / ratio)[0] - 1,
         np.array([3.1, 3.18]),
     )
     height = independent.cycle(
-        found,
+        ratio,
         zeta,
         "displacement",
-        *independent.orbit(1, found, zeta, "displacement", angle / found)[:3],
+        *independent.orbit(1, ratio, zeta, "displacement", angle / ratio)[:3],
     ).greatest_height()
     return 0.01, abs(height - reference) / reference
 
@@ -410,8 +410,8 @@ def error_of_permanent_contact(p):
     """|Λ_SD(ϖ_PC) - Λ_CR|/Λ_CR = 0.01."""
     ratios = np.geomspace(3, 300, 7)
     error = errors.permanent_contact_error(ratios, p.zeta, "displacement")
-    found = errors.threshold(ratios, error, 0.01).ratio
-    printed = np.sqrt(1 + (4 * p.zeta**2 - 2) / found**2 + 1 / found**4)
+    ratio = errors.threshold(ratios, error, 0.01).ratio
+    printed = np.sqrt(1 + (4 * p.zeta**2 - 2) / ratio**2 + 1 / ratio**4)
     return 0.01, abs(printed - 1)
 
 
@@ -462,7 +462,7 @@ EQUATIONS = {
 )
 def test_the_printed_formula_is_that_of_the_package(equation):
     for seed in range(3):
-        found, printed = equation(Parameters(seed))
+        computed, printed = equation(Parameters(seed))
         # Some hundred roundings of 1e-16, of terms that are a hundred times larger than the result
         # at most.
-        np.testing.assert_allclose(found, printed, rtol=1e-11, atol=1e-12)
+        np.testing.assert_allclose(computed, printed, rtol=1e-11, atol=1e-12)

@@ -74,7 +74,7 @@ def test_an_orbit_and_all_that_is_said_of_it(seed):
     np.testing.assert_allclose(family.equations(y), 0, atol=ROUNDING * scale)
     cycle = one.cycle()
     amplitude, phase, velocity, angle = y
-    found = family.observables(y, OBSERVABLES)
+    observed = family.observables(y, OBSERVABLES)
     multipliers = np.linalg.eigvals(
         independent.monodromy(one.n, one.ratio, one.zeta, one.release, angle / one.ratio)
     )
@@ -94,8 +94,8 @@ def test_an_orbit_and_all_that_is_said_of_it(seed):
         "admissible": returns,
     }
     assert expected.keys() == OBSERVABLES.keys()
-    assert found["admissible"] == returns == (family.clearance(y) > 0)
-    assert found["stable"] == expected["stable"]
+    assert observed["admissible"] == returns == (family.clearance(y) > 0)
+    assert observed["stable"] == expected["stable"]
     end = family.contact_end(y)
     assert end.velocity == pytest.approx(family.bounce_velocity(y))
     if cycle.contact.duration != pytest.approx(angle / one.ratio, rel=1e-6):
@@ -108,7 +108,7 @@ def test_an_orbit_and_all_that_is_said_of_it(seed):
     sampled = {"max_height": 1e-7, "centroid": 1e-7, "centroid_gap": 1e-7 * scale}
     for name in OBSERVABLES.keys() - (set() if returns else in_flight):
         error = sampled.get(name, 1e-10 * scale)
-        assert found[name] == pytest.approx(expected[name], abs=error), name
+        assert observed[name] == pytest.approx(expected[name], abs=error), name
     if not returns:
         return
     assert cycle.time == pytest.approx(2 * np.pi * one.n, **tight)
@@ -224,8 +224,8 @@ def test_multipliers_of_each_kind():
     assert {*np.sign(trace[real])} == {-1, 1}
     assert not real.all()
     larger = np.abs(expected).argmax(axis=1)
-    for multiplier, each in zip(multipliers, (larger, 1 - larger), strict=True):
-        picked = np.take_along_axis(expected, each[:, np.newaxis], axis=1)[:, 0]
+    for multiplier, index in zip(multipliers, (larger, 1 - larger), strict=True):
+        picked = np.take_along_axis(expected, index[:, np.newaxis], axis=1)[:, 0]
         # Of a pair either comes first. Near a double root half of the digits are lost.
         np.testing.assert_allclose(multiplier.real, picked.real, atol=1e-7)
         np.testing.assert_allclose(np.abs(multiplier.imag), np.abs(picked.imag), atol=1e-7)
@@ -238,8 +238,8 @@ def test_the_table_lifts_a_ball_on_a_compliant_contact_higher_than_it_flies():
         return independent.orbit(1, ratio, zeta, "displacement", duration)
 
     # The durations of 1-T orbits with this amplitude.
-    found = independent.roots(lambda d: orbit(d)[0] - amplitude, np.linspace(3, 6.28, 60))
-    (y,) = [orbit(duration) for duration in found]
+    durations = independent.roots(lambda d: orbit(d)[0] - amplitude, np.linspace(3, 6.28, 60))
+    (y,) = [orbit(duration) for duration in durations]
     family = Family(1, Contact(ratio, zeta))
     cycle = independent.cycle(ratio, zeta, "displacement", *y[:3])
     assert cycle.time == pytest.approx(2 * np.pi, abs=1e-9)
@@ -289,10 +289,10 @@ def test_an_orbit_without_clearance_grazes(ratio, zeta, release, n, low, high, w
         height = gap / ratio + table + bounce * since - since**2 / 2 - amplitude * np.sin(end)
         return np.maximum(height, height + kappa * (bounce - since - amplitude * np.cos(end)))
 
-    found = {"contact": independent.lowest(pressed), "flight": independent.lowest(outside)}
+    lowest = {"contact": independent.lowest(pressed), "flight": independent.lowest(outside)}
     # The last samples are 5e-7 of the contact or flight apart: the square of this, times forces.
-    assert found.pop(where) == pytest.approx(0, abs=1e-10)
-    assert min(found.values()) > 0
+    assert lowest.pop(where) == pytest.approx(0, abs=1e-10)
+    assert min(lowest.values()) > 0
 
 
 def test_an_orbit_that_lands_without_relative_velocity_grazes():

@@ -88,8 +88,10 @@ def calls():
             if not public or name == "NoOrbit":
                 continue
             names = inspect.signature(function).parameters
-            given = {each: RIGHT[each] for each in names if each in RIGHT} | OTHERS.get(name, {})
-            needed = {each for each, one in names.items() if one.default is one.empty}
+            given = {
+                argument: RIGHT[argument] for argument in names if argument in RIGHT
+            } | OTHERS.get(name, {})
+            needed = {argument for argument, one in names.items() if one.default is one.empty}
             if needed <= given.keys() and given.keys() & (WRONG | SEARCHED).keys():
                 yield pytest.param(function, given, id=f"{module.__name__}.{name}")
 
@@ -141,8 +143,8 @@ def test_limits_and_missing_contacts_have_their_values(release):
 
 @pytest.mark.parametrize("ratios", [100, 100.0, [100.0], np.array([100.0]), np.array(100)])
 def test_frequency_ratios_are_a_number_a_list_or_an_array(ratios):
-    found = errors.errors(["max_height"], 1, 0.65, 1.0, ratios, "displacement")
-    assert found["max_height"].values == pytest.approx([0.0082170], abs=5e-7)
+    by_quantity = errors.errors(["max_height"], 1, 0.65, 1.0, ratios, "displacement")
+    assert by_quantity["max_height"].values == pytest.approx([0.0082170], abs=5e-7)
     contact = Contact(ratios, spring_damper.damping_ratio(0.65))
     node = continuation.bifurcations([1], "saddle-node", contact)[0]
     assert node == pytest.approx(np.array([[0.662401]]), abs=1e-6)

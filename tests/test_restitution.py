@@ -263,10 +263,10 @@ def test_a_short_flight_from_a_table_that_begins_to_hold_the_ball_again(before_t
     """Without relative velocity the height is (Λ sin τ - 1)s²/2 + Λ cos τ s³/6 + O(s⁴)."""
     amplitude = 1.2
     time = np.pi - np.arcsin(1 / amplitude) - before_the_end
-    found = restitution.flight_time(amplitude, time, amplitude * np.cos(time))
+    flight = restitution.flight_time(amplitude, time, amplitude * np.cos(time))
     expected = 3 * (amplitude * np.sin(time) - 1) / (-amplitude * np.cos(time))
     # The next order is the square of this time.
-    assert found == pytest.approx(expected, abs=expected**2)
+    assert flight == pytest.approx(expected, abs=expected**2)
 
 
 @pytest.mark.parametrize(
@@ -295,6 +295,6 @@ def test_arguments_of_another_kind_are_named():
 
 
 def test_stable_orbits_are_stable():
-    found = continuation.stable_orbits(1, 0.65, [1.0, 1.5], [100.0])[0, :, 0]
-    np.testing.assert_array_equal(found, [1.0, np.nan])
+    amplitudes = continuation.stable_orbits(1, 0.65, [1.0, 1.5], [100.0])[0, :, 0]
+    np.testing.assert_array_equal(amplitudes, [1.0, np.nan])
     assert continuation.upper_orbits(1, 0.65, 1.5, 100.0)[0] == 1.5

@@ -44,9 +44,9 @@ def test_the_motion_in_contact_is_that_of_an_integration(ratio, zeta, weight, du
     x = amplitude * np.cos(phase)
     impact_height = amplitude * np.sin(phase)
     # The error of the integration is its relative tolerance, 1e-12, for each of up to 100 steps.
-    found = contact.motion(expected.duration, u, x, impact_height)
-    assert ratio * found.displacement == pytest.approx(ratio * expected.gap, abs=1e-10)
-    assert found.velocity == pytest.approx(expected.rate, abs=1e-10)
+    end = contact.motion(expected.duration, u, x, impact_height)
+    assert ratio * end.displacement == pytest.approx(ratio * expected.gap, abs=1e-10)
+    assert end.velocity == pytest.approx(expected.rate, abs=1e-10)
     # Its interpolant is of the seventh order in steps of at most 0.5.
     along = contact.motion(expected.times, u, x, impact_height)
     np.testing.assert_allclose(ratio * along.displacement, expected.gaps, atol=1e-8)
@@ -59,11 +59,11 @@ def test_the_motion_in_contact_is_that_of_an_integration(ratio, zeta, weight, du
 def test_the_motion_of_an_array_of_contacts_is_that_of_each_and_exact_to_rounding():
     ratio, zeta = np.array([[1.0, 0.0], [1.0, 0.3], [7.0, 0.05], [300.0, 0.9], [1e6, 0.05]]).T
     angle = np.array([2.0, 3.0, 3.1, 2.5, 3.14])
-    found = Contact(ratio, zeta).motion(angle / ratio, -3.0, 0.5, 0.8)
+    motion = Contact(ratio, zeta).motion(angle / ratio, -3.0, 0.5, 0.8)
     for k, (one, damping) in enumerate(zip(ratio, zeta, strict=True)):
         end = independent.transfer(one, damping, angle[k] / one) @ [0, -3.0, 0.8, 0.5, 1]
-        assert one * found.displacement[k] == pytest.approx(end[0], abs=ROUNDING)
-        assert found.velocity[k] == pytest.approx(end[1], abs=ROUNDING)
+        assert one * motion.displacement[k] == pytest.approx(end[0], abs=ROUNDING)
+        assert motion.velocity[k] == pytest.approx(end[1], abs=ROUNDING)
 
 
 @pytest.mark.parametrize(("ratio", "zeta"), [(1.0, 0.0), (5.0, 0.2)])
@@ -104,8 +104,8 @@ def test_the_restitution_of_a_free_impact(r, release):
 
 @pytest.mark.parametrize("r", [0.05, np.exp(-2)])
 def test_no_contact_with_the_force_release_has_a_small_r(r):
-    found = spring_damper.contact_of_duration(0.1, [r, 0.5], "force")
-    np.testing.assert_array_equal(np.isnan(found.frequency_ratio), [True, False])
+    contact = spring_damper.contact_of_duration(0.1, [r, 0.5], "force")
+    np.testing.assert_array_equal(np.isnan(contact.frequency_ratio), [True, False])
     # Close to critical damping it is e⁻².
     impact = independent.integrate_contact(1.0, 0.9999, "force", 0.0, 0.0, -1.0, weight=0.0)
     assert impact.rate == pytest.approx(np.exp(-2), abs=1e-4)
@@ -135,10 +135,10 @@ def steady_motion(ratio, zeta):
 def test_permanent_contact_lasts_until_the_steady_motion_reaches_its_release(ratio, zeta):
     displacement, force = steady_motion(ratio, zeta)
     # The weight alone presses the contact by q = -1/ϖ.
-    found = spring_damper.permanent_contact(ratio, zeta)
-    assert found * displacement == pytest.approx(1 / ratio, rel=1e-10)
-    found = spring_damper.permanent_contact(ratio, zeta, "force")
-    assert found * force == pytest.approx(1 / ratio, rel=1e-10)
+    amplitude = spring_damper.permanent_contact(ratio, zeta)
+    assert amplitude * displacement == pytest.approx(1 / ratio, rel=1e-10)
+    amplitude = spring_damper.permanent_contact(ratio, zeta, "force")
+    assert amplitude * force == pytest.approx(1 / ratio, rel=1e-10)
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.1, 0.5, 0.7, 0.75])
@@ -152,14 +152,14 @@ def test_the_lowest_threshold_of_permanent_contact(zeta, release):
     assert spring_damper.permanent_contact(ratio, zeta, release) == pytest.approx(lowest, abs=1e-15)
     around = np.array([0.99 * ratio, 1.01 * ratio])
     assert np.all(spring_damper.permanent_contact(around, zeta, release) > lowest)
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         lambda x: spring_damper.permanent_contact(x, zeta, release) ** 2,
         bounds=(ratio / 3, 3 * ratio),
         method="bounded",
         options={"xatol": 1e-10},
     )
     # The place of a minimum has half of the digits of its value, fewer where it is flat.
-    assert found.x == pytest.approx(ratio, rel=1e-6)
+    assert minimum.x == pytest.approx(ratio, rel=1e-6)
 
 
 @pytest.mark.parametrize(("amplitude", "zeta"), [(0.99, 0.1359), (0.5, 0.05), (0.3, 0.0)])

@@ -66,7 +66,7 @@ def changed(dataset: xr.Dataset, seed: int) -> xr.Dataset:
 def texts_of_other_numbers(seed: int) -> dict[str, str]:
     """Both texts, from datasets and formulas that give other numbers."""
     data = reference()
-    others = {key: changed(each, seed + k) for k, (key, each) in enumerate(data.items())}
+    others = {key: changed(dataset, seed + k) for k, (key, dataset) in enumerate(data.items())}
     # Conditions as text have the numbers with which they were judged. What these numbers cannot
     # decide would make it the article of another run.
     judged = claims.judge(others).assign_attrs(data["claims"].attrs)
@@ -98,7 +98,7 @@ def test_a_sentence_that_needs_what_the_results_lack_names_its_line(data):
 def test_every_computed_number_follows_a_dataset_or_a_formula(name, data):
     """Only parameters and what the paper prints stay as they are. No number is typed in Python."""
     stays = set(data["claims"].printed_text.values)
-    parameters = "".join(each.attrs["parameters"] for each in data.values())
+    parameters = "".join(dataset.attrs["parameters"] for dataset in data.values())
     stays |= set(re.findall(r"\d+\.\d+", parameters))
     remaining = decimals(text_of_reference(name)) - stays
     # A number may be there again by chance, but not three times.
@@ -152,8 +152,12 @@ def test_the_last_number_has_its_origin(source):
 
 def test_a_macro_prints_what_its_body_and_its_arguments_name():
     source = "{% macro f(y) -%}{{ y }}{{ fig14.n }}{%- endmacro %}{{ f(fig15.n) }}"
-    found = origins.origins(source, ["fig14", "fig15"])
-    assert [{*each.datasets} for each in found] == [set(), {"fig14"}, {"fig14", "fig15"}]
+    expressions = origins.origins(source, ["fig14", "fig15"])
+    assert [{*expression.datasets} for expression in expressions] == [
+        set(),
+        {"fig14"},
+        {"fig14", "fig15"},
+    ]
 
 
 @pytest.mark.parametrize(
@@ -203,7 +207,8 @@ def test_counts_follow_a_dataset(data):
 @pytest.mark.parametrize("place", [0, 1, -1])
 def test_a_further_curve_or_row_changes_no_sentence(data, place):
     more = {
-        name: with_more(each, paper.PARAMETERS.get(name, {}), place) for name, each in data.items()
+        name: with_more(dataset, paper.PARAMETERS.get(name, {}), place)
+        for name, dataset in data.items()
     }
     for name in TEXTS:
         assert text_of(name, more) == text_of_reference(name)
@@ -247,7 +252,7 @@ def test_templates_have_no_typed_numbers(path):
 def test_expressions_of_templates_have_no_typed_numbers(path):
     text = path.read_text("utf-8")
     expressions = re.findall(r"\{\{(.*?)\}\}|\{%(.*?)%\}", text, flags=re.DOTALL)
-    bare = [re.sub(r'"[^"]*"', "", each) for pair in expressions for each in pair]
+    bare = [re.sub(r'"[^"]*"', "", expression) for pair in expressions for expression in pair]
     # Digits of names, places in lists and numbers of decimals are no results.
     rest = re.sub(r"\(\d(?:, )?\)|\[[-:\d\]\[]+\]", "", "\n".join(bare))
     assert set(re.findall(r"(?<![\w.])\d[\d.]*", rest)) <= {"0", "1", "2"}
@@ -306,7 +311,7 @@ def test_verdicts_are_those_of_the_claims(name, data):
 
 def stiff_errors(data: dict[str, xr.Dataset]) -> dict[str, float]:
     """The largest errors at ϖ >= 100 on Figs. 5, 6 and 10, in per cent, from the formulas."""
-    found = []
+    largest = []
     for name, n in zip(article.STIFF_CURVES, (1, 1, 2), strict=True):
         curve = data[name].sel(frequency_ratio=slice(99.9, None))
         x = n * np.pi * (1 - curve.restitution) / (1 + curve.restitution)
@@ -317,8 +322,8 @@ def stiff_errors(data: dict[str, xr.Dataset]) -> dict[str, float]:
             "restitution": curve.apparent_restitution / curve.restitution - 1,
             "phase": (curve.phase - np.arctan2(impact_height, x)) / (2 * np.pi),
         }
-        found.append({key: 100 * float(abs(error).max()) for key, error in errors.items()})
-    return {key: max(each[key] for each in found) for key in found[0]}
+        largest.append({key: 100 * float(abs(error).max()) for key, error in errors.items()})
+    return {key: max(figure[key] for figure in largest) for key in largest[0]}
 
 
 def bounded(data: dict[str, xr.Dataset]) -> dict[str, float]:
@@ -332,9 +337,9 @@ def bounded(data: dict[str, xr.Dataset]) -> dict[str, float]:
     rows = table.printed
     computed = table.computed
     thresholds = data["thresholds"].error_threshold
-    found = {
-        "longest contact": max(each.sel(frequency_ratio=1e4).max() for each in contacts),
-        "shortest contact": min(each.sel(frequency_ratio=2.0).min() for each in contacts),
+    quantities = {
+        "longest contact": max(durations.sel(frequency_ratio=1e4).max() for durations in contacts),
+        "shortest contact": min(durations.sel(frequency_ratio=2.0).min() for durations in contacts),
         "spread": 100 * (velocity.max("case") - velocity.min("case")).max(),
         # By the closed form, in test_claims.
         "meeting": 1.27610886,
@@ -362,7 +367,7 @@ def bounded(data: dict[str, xr.Dataset]) -> dict[str, float]:
             for name in article.STIFF_CURVES
         ),
     }
-    return {key: float(value) for key, value in found.items()} | stiff_errors(data)
+    return {key: float(value) for key, value in quantities.items()} | stiff_errors(data)
 
 
 PRINTED = {
@@ -403,14 +408,16 @@ def test_largest_and_smallest_numbers_are_those_of_their_own_formulas(name, data
     # Counts, the tolerance of 1 % and the frequency ratio of the advice are exact.
     true = bounded(data)
     exact = {"1", f"{STIFF:g}", f"{true['hits']:g}", f"{true['largest n']:g}"}
-    numbers = {"".join(found) for found in re.findall(BOUND, text)}
+    numbers = {"".join(groups) for groups in re.findall(BOUND, text)}
     assert numbers - exact == set()
     numbers = re.findall(r"\d+(?:\.\d+)?", text)
     for what in PRINTED[name]:
         units = [10.0 ** -len(number.partition(".")[2]) for number in numbers]
         off = [abs(float(number) - true[what]) for number in numbers]
         # A half, up to rounding errors of the datasets.
-        assert any(each <= 0.500001 * unit for each, unit in zip(off, units, strict=True)), what
+        assert any(
+            distance <= 0.500001 * unit for distance, unit in zip(off, units, strict=True)
+        ), what
     for n, number in re.findall(r"n = (\d) up to r ≈ (\d+\.\d+)", text):
         fails = data["validity_map"].failing_up_to.sel(n=int(n)).values
         assert np.nanmin(abs(fails - float(number))) <= 0.005
@@ -438,54 +445,56 @@ def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
 
 def test_what_the_article_says_of_the_hypotheses(data):
     """Those that give 82 and 0.81 differ in the stability alone, and none explains Table 1."""
-    found = data["hypotheses"]
-    both = found.deviation_units.sel(number=["height threshold", "compliant end of 1.2"])
-    given = found.hypothesis[(abs(both) <= 0.5).all("number")].values.tolist()
+    hypotheses = data["hypotheses"]
+    both = hypotheses.deviation_units.sel(number=["height threshold", "compliant end of 1.2"])
+    given = hypotheses.hypothesis[(abs(both) <= 0.5).all("number")].values.tolist()
     assert "equations as they stand" in given
-    numbers = found.found[:, found.row.isnull().values]
+    numbers = hypotheses.found[:, hypotheses.row.isnull().values]
     own = numbers.sel(hypothesis="equations as they stand")
     assert all((numbers.sel(hypothesis=name) == own).all() for name in given)
-    assert article.others_with_82(found) == ["force release, equal r"]
-    assert found.compliant_reproduced.max() < 12 / 2
+    assert article.others_with_82(hypotheses) == ["force release, equal r"]
+    assert hypotheses.compliant_reproduced.max() < 12 / 2
 
 
 def test_what_the_article_says_of_the_map(data):
-    found = data["validity_map"]
-    assert found.not_reached.sum() == 0
+    validity_map = data["validity_map"]
+    assert validity_map.not_reached.sum() == 0
     # The orbits that are stable in both models, and the limits at their saddle-nodes.
-    fails = (found.stiff_error > LIMIT) & (found.stable | (found.place == 0))
+    fails = (validity_map.stiff_error > LIMIT) & (validity_map.stable | (validity_map.place == 0))
     # Beside the saddle-node, nowhere for n = 3, and for a whole range.
     for quantity in ("summit", "phase_in_periods"):
         one = fails.sel(quantity=quantity)
         assert (one.cumprod("place").sum("place") == one.sum("place")).all()
         assert not one.sel(n=3).any() and one.sel(n=2).any()
-    velocity = found.stiff_error.sel(quantity="bounce_velocity")
+    velocity = validity_map.stiff_error.sel(quantity="bounce_velocity")
     assert (velocity.max("place") < 1.02 * velocity.min("place")).all()
     assert not fails.sel(quantity="bounce_velocity", n=[2, 3]).any()
     # Next to the upper end for each n; next to the lower one for n = 1, and for n = 2 at one r.
     apparent = fails.sel(quantity="apparent_restitution")
-    assert apparent.where(found.place > 0.3, False).any(["restitution", "place"]).all()
-    lower = apparent.where(found.place < 0.2, False).any("place").sum("restitution")
+    assert apparent.where(validity_map.place > 0.3, False).any(["restitution", "place"]).all()
+    lower = apparent.where(validity_map.place < 0.2, False).any("place").sum("restitution")
     assert lower[0] > 2 and lower[1:].values.tolist() == [1, 0]
     assert not apparent.sel(place=0.2, method="nearest").isel(restitution=slice(3, None)).any()
     # Largest errors are limits: at the saddle-node, of the apparent restitution at the other end.
-    at_node = found.stiff_error.isel(place=0).max(["n", "restitution"])
-    largest = found.largest_error.max("n")
+    at_node = validity_map.stiff_error.isel(place=0).max(["n", "restitution"])
+    largest = validity_map.largest_error.max("n")
     assert largest.values[[0, 3]] == pytest.approx(at_node.values[[0, 3]], rel=1e-5)
     # Where the height fails, the ball flies higher on the contact, and on most orbits lower.
-    mesh = np.meshgrid(found.n, found.restitution, found.place, indexing="ij")
-    n, r, place = (each.reshape(-1, 1) for each in mesh)
+    mesh = np.meshgrid(validity_map.n, validity_map.restitution, validity_map.place, indexing="ij")
+    n, r, place = (grid.reshape(-1, 1) for grid in mesh)
     low = restitution.saddle_node(n, r)
     amplitude = low + place * (restitution.period_doubling(n, r) - low)
     family = Family(n, spring_damper.Contact.of_restitution(np.array([STIFF]), r))
     orbits = orbits_along(family, amplitude)
-    height = errors_of_orbits(family, orbits, r, amplitude)[0].reshape(found.stable.shape)
+    height = errors_of_orbits(family, orbits, r, amplitude)[0].reshape(validity_map.stable.shape)
     assert (height[fails.sel(quantity="summit").values] > LIMIT).all()
-    assert (height[found.stable.values] < 0).mean() > 0.5
+    assert (height[validity_map.stable.values] < 0).mean() > 0.5
     # Openings: most orbits are right, and both ends of the range of the contact are lower.
-    assert found.failing_mean.sel(quantity="summit").max() < 0.1
-    assert (found.below_share > found.doubled_share).all() and (found.doubled_share > 0).all()
-    needed = found.enough_from.sel(quantity="summit")
+    assert validity_map.failing_mean.sel(quantity="summit").max() < 0.1
+    assert (validity_map.below_share > validity_map.doubled_share).all() and (
+        validity_map.doubled_share > 0
+    ).all()
+    needed = validity_map.enough_from.sel(quantity="summit")
     assert needed.argmax(["n", "restitution", "place"]) == {"n": 0, "restitution": 0, "place": 0}
 
 
@@ -539,8 +548,8 @@ def test_what_the_article_says_of_table_1(data):
 
 
 def test_all_orbits_drawn_are_admissible(data):
-    drawn = [each for name, each in data.items() if name.startswith("fig")]
-    assert all(each.admissible.all() for each in drawn if "admissible" in each)
+    drawn = [dataset for name, dataset in data.items() if name.startswith("fig")]
+    assert all(dataset.admissible.all() for dataset in drawn if "admissible" in dataset)
 
 
 def test_what_the_article_says_of_figures_6_10_and_16(data):

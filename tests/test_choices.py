@@ -23,7 +23,7 @@ def test_an_axis_ends_where_it_is_chosen_to_end():
     assert [*axes] == [f"ϖ from {name}" for name in names]
     # The first points of 20 in a decade from 0.5 and from 2 on.
     first = [0.1, 10 ** (7 / 20), 10 ** (-6 / 20), 10 ** (-6 / 20)]
-    ends = [each.frequency_ratio.values[[0, -1]] for each in axes.values()]
+    ends = [data.frequency_ratio.values[[0, -1]] for data in axes.values()]
     assert np.array(ends) == pytest.approx(np.transpose([first, [100, 100, 10, 100]]))
 
 
@@ -61,5 +61,5 @@ def test_what_the_supplement_says_of_the_choices_is_in_the_result():
 
 def test_a_run_with_other_parameters_has_no_choices():
     other = with_parameters(reference()["fig12"], n=2)
-    found = study.changed_verdicts(reference() | {"fig12": other})
-    assert {*found} == {"choice", "instead", "changes"} and found.sizes["alternative"] == 0
+    verdicts = study.changed_verdicts(reference() | {"fig12": other})
+    assert {*verdicts} == {"choice", "instead", "changes"} and verdicts.sizes["alternative"] == 0

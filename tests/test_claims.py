@@ -142,8 +142,8 @@ def test_the_numbers_of_statements_are_those_of_formulas_of_their_own(reference,
             for data in (reference["fig05"], fig06)
         ),
     }
-    found = {name: float(judged["found"].sel(claim=name)) for name in expected}
-    assert found == pytest.approx({name: float(value) for name, value in expected.items()})
+    numbers = {name: float(judged["found"].sel(claim=name)) for name in expected}
+    assert numbers == pytest.approx({name: float(value) for name, value in expected.items()})
 
 
 # What changes in a dataset, and the verdict that it must change.
@@ -189,21 +189,21 @@ def test_a_sense_of_every_curve_is_asked_of_each(reference, figure):
         "phases converge",
     ):
         for datasets, holds in ((reference, True), (changed, False)):
-            readings = EVERY[name].decide(*(datasets[each] for each in EVERY[name].datasets))
+            readings = EVERY[name].decide(*(datasets[dataset] for dataset in EVERY[name].datasets))
             assert readings[-1].holds == holds
 
 
 @pytest.mark.parametrize("name", ["height rises", "threshold ensures"])
 def test_the_curve_of_the_smallest_r_alone_contradicts_what_heights_do(reference, name):
-    datasets = [reference[each] for each in EVERY[name].datasets]
-    others = [each.isel(case=slice(3)) if "case" in each.dims else each for each in datasets]
+    datasets = [reference[dataset] for dataset in EVERY[name].datasets]
+    others = [data.isel(case=slice(3)) if "case" in data.dims else data for data in datasets]
     assert [reading.holds for reading in EVERY[name].decide(*others)][-1]
     assert answer(EVERY[name], reference)["own_sense"] == "holds"
 
 
 def test_models_that_agree_contradict_what_the_paper_says_of_their_differences(reference):
     rigid = reference["table1"]["restitution_range"].sel(impact_map="exact", drop=True)
-    table1, fig15, found = (reference[name] for name in ("table1", "fig15", "validity_map"))
+    table1, fig15, validity_map = (reference[name] for name in ("table1", "fig15", "validity_map"))
     kind = fig15["special_kind"]
     ends = fig15["saddle_node_amplitude"].where(
         kind == "saddle-node", fig15["period_doubling_amplitude"]
@@ -211,7 +211,7 @@ def test_models_that_agree_contradict_what_the_paper_says_of_their_differences(r
     same = {
         "table1": table1.assign(computed=rigid.broadcast_like(table1["computed"])),
         "fig15": fig15.assign(special_amplitude=ends.where(kind != "")),
-        "validity_map": found.assign(below_share=found["doubled_share"]),
+        "validity_map": validity_map.assign(below_share=validity_map["doubled_share"]),
     }
     for name, n in (("fig05", 1), ("fig06", 1), ("fig10", 2)):
         curves = reference[name]
@@ -243,8 +243,8 @@ def test_a_moving_table_like_one_at_rest_is_no_reason_for_another_restitution(re
     at_rest = [measures.restitution_at_rest(0.65, ratio) for ratio in curves.frequency_ratio.values]
     still = xr.zeros_like(curves) + xr.DataArray(at_rest, dims="frequency_ratio")
     changed = reference | {"fig06": fig06.assign(apparent_restitution=still)}
-    found = answer(EVERY["moving table"], changed)
-    assert (found["verdict"], found["own_sense"]) == ("partly", "holds")
+    judgement = answer(EVERY["moving table"], changed)
+    assert (judgement["verdict"], judgement["own_sense"]) == ("partly", "holds")
 
 
 def test_the_end_of_a_curve_is_that_of_the_curve_of_the_largest_amplitude(reference):
@@ -419,8 +419,8 @@ def test_a_missing_dataset_takes_away_its_claims(reference, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_numbers_that_are_missing_take_away_their_claims(reference, name):
     data = reference[name]
-    computed = [each for each, values in data.items() if values.dtype.kind == "f"]
-    lost = {each: data[each] * np.nan for each in computed if each != "printed"}
+    computed = [variable for variable, values in data.items() if values.dtype.kind == "f"]
+    lost = {variable: data[variable] * np.nan for variable in computed if variable != "printed"}
     datasets = with_other(reference, name, **lost)
     for claim in users(name):
         decided = claim.datasets == claims.CONTACT_OF_FIG11
@@ -465,19 +465,19 @@ def test_claims_under_other_parameters_are_not_asked(reference, name):
         said = other_parameters(name, changed, paper.PARAMETERS[name])
         assert said.startswith(f"{name}.{key}")
     for claim in users(name):
-        found = answer(claim, reference | {name: changed})
-        assert found["verdict"] == "not asked"
-        assert f"{name}.{key}" in found["reason"]
+        judgement = answer(claim, reference | {name: changed})
+        assert judgement["verdict"] == "not asked"
+        assert f"{name}.{key}" in judgement["reason"]
 
 
 def test_parameters_on_which_no_claim_rests_may_be_others(reference, judged):
     other = parameters(reference["fig14"])["frequency_ratio"] | {"samples": 77}
     changed = with_parameters(reference["fig14"], frequency_ratio=other, tolerance=0.02)
     for claim in users("fig14"):
-        found = verdict(claim.name, reference | {"fig14": changed})
+        new_verdict = verdict(claim.name, reference | {"fig14": changed})
         # Only the threshold of ϖ depends on the tolerance.
         silent = claim.name == "height threshold"
-        assert found == ("not asked" if silent else verdicts(judged)[claim.name])
+        assert new_verdict == ("not asked" if silent else verdicts(judged)[claim.name])
 
 
 # Formulas that no other module tests
@@ -508,17 +508,17 @@ def test_equation_8_is_the_doubling_of_the_map_whose_flights_end_at_their_height
 def test_a_claim_of_ones_own_changes_no_count_and_one_that_raises_is_named(judged, reference):
     own = [replace(EVERY["range widens"], name="mine", place="")]
     wrong = replace(EVERY["dip at 1.2"], decide=lambda fig06: fig06["height"])
-    rest = [each for name, each in EVERY.items() if name != wrong.name]
-    found = judgements.judged(reference, [*rest, wrong, *own], [], "")
-    assert found["group"].sel(claim="mine") == "own claim"
-    assert found["verdict"].sel(claim="mine") == "reproduced"
-    (line,) = judgements.raised(found)
+    rest = [claim for name, claim in EVERY.items() if name != wrong.name]
+    with_own = judgements.judged(reference, [*rest, wrong, *own], [], "")
+    assert with_own["group"].sel(claim="mine") == "own claim"
+    assert with_own["verdict"].sel(claim="mine") == "reproduced"
+    (line,) = judgements.raised(with_own)
     assert line.startswith("dip at 1.2 is not asked, its function <lambda> raises KeyError")
-    assert "\n## Own claims\n" in judgements.claims_markdown(found, "", "Table 1")
+    assert "\n## Own claims\n" in judgements.claims_markdown(with_own, "", "Table 1")
     expected = judgements.counts(judged)
     expected["statement"]["not reproduced"] -= 1
     expected["statement"]["not asked"] += 1
-    assert judgements.counts(found) == expected
+    assert judgements.counts(with_own) == expected
 
 
 # All claims
@@ -545,8 +545,8 @@ def test_thresholds_are_compared_from_the_printed_ratio_on(judged):
     """At ϖ = 6, which is no point of the grid, Eq. 33 has a closed form."""
     zeta = independent.restitution_to_damping(0.65)
     exact = 1 - np.sqrt(1 + (4 * zeta**2 - 2) / 36 + 1 / 36**2)
-    found = judged["found"].sel(claim="different below 6 only")
-    assert float(found) == pytest.approx(exact, rel=1e-5)
+    difference = judged["found"].sel(claim="different below 6 only")
+    assert float(difference) == pytest.approx(exact, rel=1e-5)
 
 
 def test_restored_formulas_cover_the_equations_and_name_members():

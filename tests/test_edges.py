@@ -37,8 +37,8 @@ COARSE = {"samples": 7, "points": 15, "places": 4, "impacts": 256}
 def coarse(value):
     """The same parameters with few points."""
     if isinstance(value, dict):
-        return {key: COARSE.get(key, coarse(each)) for key, each in value.items()}
-    return [coarse(each) for each in value] if isinstance(value, list) else value
+        return {key: COARSE.get(key, coarse(part)) for key, part in value.items()}
+    return [coarse(part) for part in value] if isinstance(value, list) else value
 
 
 CONFIGURATION = coarse(CONFIG) | {"largest_step": 0.5}
@@ -89,12 +89,12 @@ def single(entry: dict) -> dict:
 def edges_of(schemas: dict, entry: dict) -> Iterator[dict]:
     """Changed parameters of an entry: its lists, its grids, and each other key by itself."""
     lists = {key: entry[key] for key in schemas if isinstance(entry[key], list)}
-    yield {key: each[:1] for key, each in lists.items()}
-    yield {key: each[::-1] for key, each in lists.items()}
+    yield {key: listed[:1] for key, listed in lists.items()}
+    yield {key: listed[::-1] for key, listed in lists.items()}
     sizes = {*COARSE} & schemas.keys()
     ranges = {key for key in schemas if isinstance(entry[key], dict) and "samples" in entry[key]}
     yield {key: smallest(schemas[key], entry[key]) for key in sorted(sizes | ranges)}
-    for key in [each for each in schemas if each not in sizes]:
+    for key in [key for key in schemas if key not in sizes]:
         for value in others(schemas[key], entry[key]):
             yield single(entry) | {key: value}
 
@@ -132,7 +132,11 @@ CASES = [
     (
         "apparent_restitution",
         "fig05",
-        {"cases": [{"restitution": 0.65, "amplitude": each} for each in (1.0, 1.0000001)]},
+        {
+            "cases": [
+                {"restitution": 0.65, "amplitude": amplitude} for amplitude in (1.0, 1.0000001)
+            ]
+        },
     ),
     ("apparent_restitution", "fig06", {"n": 5}),
     (
@@ -225,7 +229,7 @@ def made(section: str, name: str, config: dict):
     function = stage(section).STAGE[name]
     given = {key: config[key] for key in settings_of(function)}
     about = ("title", "caption", "table")
-    given |= {key: each for key, each in config[section][name].items() if key not in about}
+    given |= {key: value for key, value in config[section][name].items() if key not in about}
     data = computed(function, given)
     saved = {key: reference()[name].attrs[key] for key in ("title", "code")}
     return data.assign_attrs(saved)
@@ -265,16 +269,16 @@ def assert_picture_is_true(name: str, data, of_paper: bool) -> None:
 
 def assert_numbers_are_true(name: str, data) -> None:
     """Shares are shares, ends of ranges are in their order, and so are thresholds."""
-    for each in ("failing_share", "failing_mean", "doubled_share", "doubled_mean"):
-        if each in data:
-            assert ((data[each] >= 0) & (data[each] <= 1) | data[each].isnull()).all(), each
+    for share in ("failing_share", "failing_mean", "doubled_share", "doubled_mean"):
+        if share in data:
+            assert ((data[share] >= 0) & (data[share] <= 1) | data[share].isnull()).all(), share
     if "failing_share" in data:
         # No orbit is counted twice.
         both = data.failing_share + data.doubled_share
         assert ((both <= 1 + 1e-9) | both.isnull()).all()
-    for each in ("computed", "restitution_range", "printed"):
-        if each in data:
-            assert not (data[each].isel(bound=0) > data[each].isel(bound=1)).any(), each
+    for ends in ("computed", "restitution_range", "printed"):
+        if ends in data:
+            assert not (data[ends].isel(bound=0) > data[ends].isel(bound=1)).any(), ends
     given = json.loads(data.attrs["parameters"])
     if name == "fig16" and given["release"] == "displacement":
         # Eq. 33 on a fine grid.
@@ -305,7 +309,7 @@ def finite(value, digits, shift=0, fixed=texts.fixed) -> str:
 @cache
 def named_in(text: str) -> set[str]:
     """The datasets that a text names."""
-    return {name for each in article.origins_of(text, reference()) for name in each.datasets}
+    return {name for origin in article.origins_of(text, reference()) for name in origin.datasets}
 
 
 def assert_texts_are_true(changed: dict) -> None:
@@ -321,13 +325,13 @@ def assert_texts_are_true(changed: dict) -> None:
     unasked = set()
     for claim in EVERY:
         if changed.keys() & claim.datasets.keys():
-            found = answer(claim, datasets)
-            assert found["verdict"] in VERDICTS and "nan" not in str(found.get("condition"))
+            judgement = answer(claim, datasets)
+            assert judgement["verdict"] in VERDICTS and "nan" not in str(judgement.get("condition"))
             # Algebra on Fig. 11 needs its release only.
             if others & claim.datasets.keys() and claim.datasets != CONTACT_OF_FIG11:
-                assert found["verdict"] == "not asked"
-            if found["verdict"] == "not asked":
-                unasked.add(found["reason"])
+                assert judgement["verdict"] == "not asked"
+            if judgement["verdict"] == "not asked":
+                unasked.add(judgement["reason"])
     if unasked or paper.changed_parameters(datasets):
         return
     with pytest.MonkeyPatch.context() as patch:
@@ -390,18 +394,18 @@ def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_
 
 
 def test_another_release_gives_true_pages():
-    found = {}
+    forced = {}
     for section, name in computed_entries():
         known = settings_of(stage(section).STAGE[name])
         if name in reference() and "release" in known:
             config = changed(section, name, single(CONFIGURATION[section][name]))
-            found[name] = made(section, name, config | {"release": "force"})
+            forced[name] = made(section, name, config | {"release": "force"})
             if name in figures.PLOTS:
-                assert_picture_is_true(name, found[name], False)
-            assert_numbers_are_true(name, found[name])
-    assert len(found) > 10
-    assert_texts_are_true(found)
-    datasets = reference() | found
+                assert_picture_is_true(name, forced[name], False)
+            assert_numbers_are_true(name, forced[name])
+    assert len(forced) > 10
+    assert_texts_are_true(forced)
+    datasets = reference() | forced
     datasets["claims"] = judge(datasets).assign_attrs(reference()["claims"].attrs)
     page = re.sub(r"(?s)<style>.*?</style>", "", index.list_of_figures("html", datasets, ENTRIES))
     assert not re.search(r"\bnan\b|\binf\b|\bNone\b(?! of)|\w+Error\b", page)

@@ -11,7 +11,7 @@ from paper_replication import verdicts
 
 
 @pytest.mark.parametrize(
-    ("found", "printed", "verdict"),
+    ("computed", "printed", "verdict"),
     [
         (0.2545, "0.255", "reproduced"),
         (0.2555, "0.255", "reproduced"),
@@ -29,8 +29,8 @@ from paper_replication import verdicts
         (np.nan, "6", "not asked"),
     ],
 )
-def test_a_number_is_reproduced_if_it_rounds_to_the_printed_one(found, printed, verdict):
-    assert verdicts.against_print(found, printed).verdict == verdict
+def test_a_number_is_reproduced_if_it_rounds_to_the_printed_one(computed, printed, verdict):
+    assert verdicts.against_print(computed, printed).verdict == verdict
 
 
 # Statements
@@ -67,10 +67,10 @@ def test_what_follows_by_algebra_holds_and_gives_its_reason():
     claim = verdicts.Claim(
         "name", "Eq. 1", "text", {}, lambda: [verdicts.argued("the limit", True, "by algebra")]
     )
-    found = verdicts.answer(claim, {})
-    assert found["verdict"] == "reproduced"
-    assert found["condition"] == ["yes: the limit (by algebra)"]
-    assert found["own_sense"] == ""
+    judgement = verdicts.answer(claim, {})
+    assert judgement["verdict"] == "reproduced"
+    assert judgement["condition"] == ["yes: the limit (by algebra)"]
+    assert judgement["own_sense"] == ""
     certain = verdicts.by_definition("the duration", "it is positive")
     assert verdicts.of_readings(claim, [certain])["own_sense"] == "cannot fail"
     assert verdicts.of_readings(claim, [certain, *claim.decide()])["own_sense"] == ""

@@ -12,7 +12,7 @@ with reading(snakemake.input) as sources:
     from carbonelli2011.choices import changed_verdicts
     from paper_replication.datasets import read, save, save_record
 
-    found = changed_verdicts({Path(path).stem: read(path) for path in snakemake.input.data})
+    verdicts = changed_verdicts({Path(path).stem: read(path) for path in snakemake.input.data})
     title = "Verdicts that depend on what cannot be read in the paper"
-    save(found, snakemake.output.nc, title, {}, sources, PROJECT)
+    save(verdicts, snakemake.output.nc, title, {}, sources, PROJECT)
     save_record(snakemake, sources, PROJECT)

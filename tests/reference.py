@@ -54,8 +54,8 @@ def stage(name: str) -> ModuleType:
 def table_with_another_row() -> xr.Dataset:
     """Table 1 computed with a row that the paper does not print, between those that it prints."""
     given = CONFIG["continuation"]["table1"] | {"frequency_ratio": [1e4, 50.0, 10.0, 2.0]}
-    found = stage("continuation").table1(given, CONFIG["release"])
-    return found.assign_attrs(
+    table = stage("continuation").table1(given, CONFIG["release"])
+    return table.assign_attrs(
         title=ENTRIES["table1"]["title"],
         parameters=json.dumps(given | {"release": CONFIG["release"]}),
     )
@@ -78,11 +78,11 @@ def with_more(data: xr.Dataset, needed: Mapping, place: int) -> xr.Dataset:
             first = data.isel({along: [0]})
             wrong = {
                 name: (
-                    each.dims,
-                    np.array(["more"]) if each.dtype.kind in "OU" else 7 * each.values,
+                    variable.dims,
+                    np.array(["more"]) if variable.dtype.kind in "OU" else 7 * variable.values,
                 )
-                for name, each in first.variables.items()
-                if along in each.dims and (name in first.coords or each.dtype.kind == "f")
+                for name, variable in first.variables.items()
+                if along in variable.dims and (name in first.coords or variable.dtype.kind == "f")
             }
             more = first.assign(wrong).set_coords(first.coords)
             parts = [data.isel({along: slice(place)}), more, data.isel({along: slice(place, None)})]

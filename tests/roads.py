@@ -130,6 +130,6 @@ def follow_recipes() -> int:
 
 if __name__ == "__main__":
     failures = [
-        each for each in sys.argv[1:] if (follow_recipes() if each == "recipes" else walk(each))
+        road for road in sys.argv[1:] if (follow_recipes() if road == "recipes" else walk(road))
     ]
     sys.exit(f"Not walked to the end: {', '.join(failures)}" if failures else 0)

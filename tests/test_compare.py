@@ -53,7 +53,7 @@ def note(project, rule, files, code, data=(), **parameters):
     results = project.top / "results"
     record = str(results / f"records/{rule}.json")
     output = Named(record=record, **{file: str(results / file) for file in files})
-    paths = [str(results / f"figures/{each}.nc") for each in data]
+    paths = [str(results / f"figures/{name}.nc") for name in data]
     job = SimpleNamespace(output=output, params=SimpleNamespace(**parameters))
     datasets.save_record(job, read_by(project, code, paths), project)
 
@@ -67,7 +67,7 @@ def make(name, data, folder, form="{:.3g}"):
     """Pictures that show numbers to three digits, or a schematic without data."""
     figure = Figure(figsize=(1, 1))
     numbers = [] if data is None else data.max_height.values
-    figure.text(0, 0.5, " ".join(form.format(each) for each in numbers))
+    figure.text(0, 0.5, " ".join(form.format(number) for number in numbers))
     save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "a salt")
 
 
@@ -80,7 +80,7 @@ def png(values):
 
 def side_by_side(name, several):
     """Pictures that are as dark as the heights of all datasets are large."""
-    return [png([255 - 100 * each.max_height.values]) for each in several]
+    return [png([255 - 100 * data.max_height.values]) for data in several]
 
 
 def project_in(top):
@@ -134,7 +134,7 @@ def project(accepted, tmp_path):
 def git(top, *arguments):
     # Newer versions of git tidy up in the background, while a test copies the folder.
     settings = ["user.name=A", "user.email=a@b.c", "maintenance.auto=false"]
-    options = chain.from_iterable(("-c", each) for each in settings)
+    options = chain.from_iterable(("-c", setting) for setting in settings)
     subprocess.run(["git", "-C", str(top), *options, *arguments], check=True)
 
 
@@ -199,8 +199,8 @@ def accept(project, made=MADE):
     return compare.accept(project, results, [results / file for file in (*made, "index.html")])
 
 
-def printed(found):
-    return found.printed("diff.txt.j2").splitlines()
+def printed(comparison):
+    return comparison.printed("diff.txt.j2").splitlines()
 
 
 def lines(project, **given):
@@ -261,20 +261,20 @@ def test_a_changed_parameter_is_named_with_what_follows_from_it(project):
     entries = {"fig14": ENTRIES["fig14"] | {"n": 2}}
     run(project, height=(1.0, 2.5), verdict="contradicted", text="83", entries=entries, n=2)
     config = {"release": "force", "stage": entries}
-    found = report(project, config=config)
-    assert found.lines() == [
+    comparison = report(project, config=config)
+    assert comparison.lines() == [
         f"fig14: {HIGHER}; changed parameter: n 1 → 2",
         "claims: verdict reproduced → contradicted at claim = high; follows from: fig14",
     ]
     changed = [("is 82", "is 83")]
-    following = found.those("follows").items()
-    assert {file: each.sentences for file, each in following} == {
+    following = comparison.those("follows").items()
+    assert {file: finding.sentences for file, finding in following} == {
         "figures/fig14.png": [],
         "figures/fig14.svg": [],
         "paper.md": changed,
         "supplement.md": changed,
     }
-    assert printed(found)[2:] == [
+    assert printed(comparison)[2:] == [
         *("paper.md, changed sentences: 1", "  − is 82", "  + is 83"),
         *("supplement.md, changed sentences: 1", "  − is 82", "  + is 83"),
         "Not compared, because a dataset differs: figures/fig14.png, figures/fig14.svg.",
@@ -343,7 +343,7 @@ def test_the_main_branch_may_be_that_of_origin_and_code_is_listed_without_it(pro
 
 
 def test_a_description_names_the_file_of_descriptions(project, monkeypatch):
-    other = {name: replace(each) for name, each in variables.described("fig14").items()}
+    other = {name: replace(variable) for name, variable in variables.described("fig14").items()}
     other["max_height"] = replace(other["max_height"], long_name="highest")
     edit(project, "src/variables.py")
     (line,) = lines(replace(project, describe=lambda name: other))
@@ -373,7 +373,7 @@ def test_variables_shapes_types_and_infinities_differ(project, change, line):
     path = project.top / "results/figures/fig14.nc"
     data = datasets.read(path)
     change(data).to_netcdf(path)
-    assert any(line in " ".join(each.split()) for each in lines(project))
+    assert any(line in " ".join(difference.split()) for difference in lines(project))
 
 
 def test_titles_and_captions_are_parameters(project):
@@ -408,8 +408,8 @@ def test_titles_and_captions_are_parameters(project):
 )
 def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
     (project.top / "results/paper.md").write_bytes(text.encode())
-    (found,) = lines(project)
-    assert found.startswith(f"paper: paper.md, {line}; ")
+    (difference,) = lines(project)
+    assert difference.startswith(f"paper: paper.md, {line}; ")
 
 
 def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
@@ -428,8 +428,8 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     assert report(project).status == 0
     # So they are between two runs.
     second = compare.run_in(project.top / "results", "second")
-    found = compare.compare(project, first, second)
-    assert (found.status, found.those("drawn elsewhere").keys()) == (
+    comparison = compare.compare(project, first, second)
+    assert (comparison.status, comparison.those("drawn elsewhere").keys()) == (
         0,
         {"figures/fig14.png", "figures/fig14.svg"},
     )
@@ -453,8 +453,8 @@ def test_one_figure_is_compared_and_a_missing_one_is_named(project):
     assert lines(project)[0].startswith("paper: cannot be compared: paper.md in the results: ")
     # Rules make two pictures that nobody made.
     pictures = ("figures/fig18.png", "figures/fig18.svg")
-    found = report(project, names=["fig18"], made=pictures)
-    assert ([*found.findings], found.status) == ([*pictures], 2)
+    comparison = report(project, names=["fig18"], made=pictures)
+    assert ([*comparison.findings], comparison.status) == ([*pictures], 2)
 
 
 @pytest.mark.parametrize("drawn", [True, False])
@@ -533,8 +533,8 @@ def test_a_table_has_a_row_for_each_variable_and_the_rest_is_named():
         xr.Dataset({f"h{n:02}": ("x", values, about) for n in range(12)}, {"x": [1, 2, 4, 8]})
         for values in numbers
     )
-    found = compare.Finding("differs", compare.differences("a.nc", old, new))
-    first, *rows = found.lines("a")
+    finding = compare.Finding("differs", compare.differences("a.nc", old, new))
+    first, *rows = finding.lines("a")
     assert first == "a: 12 differences"
     assert rows[:-1] == [f"  h{n:02}  3 of 4  2 → 2.5 at x = 2" for n in range(10)]
     assert rows[-1] == "  and h10, h11"
@@ -571,9 +571,9 @@ def test_of_several_workflows_in_a_zip_each_takes_its_own_results(project, tmp_p
         (tmp_path / "all" / folder).mkdir(parents=True)
     file = shutil.make_archive(str(tmp_path / "everything"), "zip", tmp_path / "all")
     other = replace(project, top=project.top / "extras/other")
-    for each, folder in ((project, "results"), (other, "extras/other/results")):
+    for workflow, folder in ((project, "results"), (other, "extras/other/results")):
         unpacked = tmp_path / folder.replace("/", "-")
-        assert compare.results_of(each, Path(file), unpacked) == unpacked / folder
+        assert compare.results_of(workflow, Path(file), unpacked) == unpacked / folder
 
 
 def two_runs(project, tmp_path):
@@ -687,8 +687,8 @@ def test_names_are_escaped_and_a_page_that_cannot_be_written_changes_no_verdict(
     assert compare.main(project, [str(project.top)]) == 1
     text = capsys.readouterr().out
     page = project.top / "results/diff/index.html"
-    for each in (text, page.read_text("utf-8")):
-        assert "\x1b" not in each and "\nAll 8 files" not in each
+    for content in (text, page.read_text("utf-8")):
+        assert "\x1b" not in content and "\nAll 8 files" not in content
     assert "<img src=x>" in text and "<img src=x>" not in page.read_text("utf-8")
     shutil.rmtree(page.parent)
     page.parent.write_text("a file", "utf-8")
@@ -701,9 +701,9 @@ def test_a_text_with_another_title_has_no_sentences(project):
     path = project.top / "results/paper.md"
     path.write_text("another run\nis 83\n", "utf-8")
     note(project, "article", project.texts, "src/writing.py", ["fig14"], entries=ENTRIES)
-    found = report(project).findings
-    assert found["paper.md"].sentences == []
-    assert found["supplement.md"].sentences == [("is 82", "is 83")]
+    findings = report(project).findings
+    assert findings["paper.md"].sentences == []
+    assert findings["supplement.md"].sentences == [("is 82", "is 83")]
 
 
 def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
@@ -1100,13 +1100,13 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
         if stale:
             edit(project, code)
         pair = sides(file)
-        found = compare.finding(*pair, checkout, differing)
+        finding = compare.finding(*pair, checkout, differing)
         situation = (old, new, stale, contents, file.endswith(".nc"), with_reference)
-        assert found.verdict == wanted(*situation), situation
+        assert finding.verdict == wanted(*situation), situation
         assert (
-            found.verdict != "differs"
+            finding.verdict != "differs"
             or "edited" not in (old, new)
-            or compare.EDITED in found.causes
+            or compare.EDITED in finding.causes
         ), situation
         # Only what is fresh and recorded is accepted.
         assert (not pair[1].wrong) == (new == "recorded" and not (stale and with_reference))
@@ -1208,17 +1208,19 @@ def test_every_number_of_the_reference_is_compared_with_its_tolerance(path):
             assert named(path, data, other, names) == {
                 name for name in names if abs(share) > 1 and not other[name].equals(data[name])
             }
-    for name, each in whole.variables.items():
+    for name, variable in whole.variables.items():
         if name not in numbers:
             data = whole.drop_vars([other for other in whole.data_vars if other != name])
-            values = OTHERS[each.dtype.kind](each.values)
-            other = data.assign({name: (each.dims, values, each.attrs)})
+            values = OTHERS[variable.dtype.kind](variable.values)
+            other = data.assign({name: (variable.dims, values, variable.attrs)})
             assert named(path, data, other, [name]) == {name}
 
 
 def named(path, data, other, names):
     """Those of the variables that a comparison of two datasets names."""
-    return {each.what for each in compare.differences(path.name, data, other)} & {*names}
+    return {difference.what for difference in compare.differences(path.name, data, other)} & {
+        *names
+    }
 
 
 @pytest.mark.parametrize(
@@ -1233,25 +1235,30 @@ def test_what_is_new_along_each_dimension_of_the_reference_is_told_and_the_rest_
     whole = datasets.read(path)
     for dim in map(str, whole.dims):
         gone = (
-            1 if any(dim in each.dims for each in whole.coords.values()) else whole.sizes[dim] - 1
+            1
+            if any(dim in coordinate.dims for coordinate in whole.coords.values())
+            else whole.sizes[dim] - 1
         )
         less = whole.isel({dim: [n for n in range(whole.sizes[dim]) if n != gone]})
         if whole.sizes[dim] < 3:
             continue
-        for name, each in whole.coords.items():
-            if each.dtype.kind == "f" and dim in each.dims:
+        for name, coordinate in whole.coords.items():
+            if coordinate.dtype.kind == "f" and dim in coordinate.dims:
                 less = less.assign_coords(
-                    {name: (each.dims, less[name].values * (1 + 1e-12), each.attrs)}
+                    {name: (coordinate.dims, less[name].values * (1 + 1e-12), coordinate.attrs)}
                 )
         for pair, what in (((whole, less), "missing"), ((less, whole), "new")):
             (told,) = compare.differences(path.name, *pair)
             assert told.what == dim and told.change.endswith(f" is {what}")
         changed = {}
-        for name in [each for each in less.data_vars if less[each].dtype.kind == "f"]:
+        for name in [name for name in less.data_vars if less[name].dtype.kind == "f"]:
             values = less[name].values.copy()
             known = np.argwhere(np.isfinite(values))
             if known.size and "tolerance_scale" not in less[name].attrs:
                 values[tuple(known[-1])] += 1.0
                 changed[name] = (less[name].dims, values, less[name].attrs)
-        told = [each.what for each in compare.differences(path.name, whole, less.assign(changed))]
+        told = [
+            difference.what
+            for difference in compare.differences(path.name, whole, less.assign(changed))
+        ]
         assert told[0] == dim and sorted(told[1:]) == sorted(changed)

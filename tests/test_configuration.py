@@ -162,5 +162,5 @@ def test_thresholds_of_bifurcations_need_no_orbit():
 
 def test_the_closed_forms_are_those_of_the_restitution_model():
     for n, r in product((1, 2, 5, 20), (1e-6, 0.05, 0.65, 1.0)):
-        found = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
-        assert stable_range(n, r) == pytest.approx(found, rel=1e-14)
+        bifurcations = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
+        assert stable_range(n, r) == pytest.approx(bifurcations, rel=1e-14)

@@ -63,14 +63,14 @@ def branches(name, data):
     if name == "fig03":
         families = [data.sel(n=n) for n in data.n]
         exact = [family.sel(impact_map="exact") for family in families]
-        return [curves.restitution_branch(*each) for each in zip(families, exact, strict=True)]
+        return [curves.restitution_branch(*pair) for pair in zip(families, exact, strict=True)]
     contacts = [data.sel(frequency_ratio=ratio) for ratio in data.frequency_ratio]
-    found = [curves.spring_damper_branch(contact) for contact in contacts]
+    drawn = [curves.spring_damper_branch(contact) for contact in contacts]
     if name == "fig15":
         variables = ("amplitude", "phase", "stable", "admissible")
-        rigid = xr.Dataset({each: data[f"restitution_{each}"] for each in variables})
-        found.append(curves.restitution_branch(rigid, data))
-    return found
+        rigid = xr.Dataset({variable: data[f"restitution_{variable}"] for variable in variables})
+        drawn.append(curves.restitution_branch(rigid, data))
+    return drawn
 
 
 def lines_of(figure, label):
@@ -123,7 +123,7 @@ def test_marks_are_at_the_special_points(name):
                 assert any(at(line, x, y).size for line in marks)
                 assert {line.get_marker() for line in marks} == {curves.MARKS[kind]["marker"]}
                 # The line of the branch passes through it too.
-                drawn = [line for each in curves.KINDS for line in lines_of(figure, each)]
+                drawn = [line for orbits in curves.KINDS for line in lines_of(figure, orbits)]
                 assert any(at(line, x, y).size for line in drawn)
                 count += 1
     assert count >= 4
@@ -199,8 +199,8 @@ def test_the_balls_of_the_moving_figure_move_as_in_the_dataset():
         time, down = moved(sheet, f"ball{k}")
         phase = data.restitution_phase.item() + 2 * np.pi * time / 100
         table, ball = (
-            np.interp(phase, data.table_phase, each, period=2 * np.pi)
-            for each in (data.table, height)
+            np.interp(phase, data.table_phase, position, period=2 * np.pi)
+            for position in (data.table, height)
         )
         # Positions have tenths of a point, and times hundredths of a per cent of the cycle.
         assert down == pytest.approx(unit * (ball[0] - ball), abs=0.2)
@@ -229,7 +229,7 @@ def test_the_poincare_map_shows_both_ends_of_contact_and_the_restitution_model()
         ([phase, phase], [data.restitution_impact_velocity, data.restitution_bounce_velocity]),
     ):
         points = np.stack([x, y], axis=1)
-        assert any(each.shape == points.shape and np.allclose(each, points) for each in lines)
+        assert any(line.shape == points.shape and np.allclose(line, points) for line in lines)
 
 
 def test_an_error_that_changes_its_sign_is_zero_between():
@@ -271,8 +271,8 @@ def test_a_branch_without_orbits_is_named_above():
 def test_a_figure_without_an_orbit_is_refused_with_its_parameters(name):
     """An empty picture was drawn, or matplotlib's error was shown."""
     (data,) = data_of(name)
-    empty = [each for each in data.data_vars if data[each].dtype.kind == "f"]
-    nothing = data.assign({each: np.nan * data[each] for each in empty})
+    empty = [variable for variable in data.data_vars if data[variable].dtype.kind == "f"]
+    nothing = data.assign({variable: np.nan * data[variable] for variable in empty})
     with pytest.raises(ValueError, match=rf"^{name} would be empty: no orbit has n = .*Eq\. 7"):
         figures.draw(name, nothing)
 
@@ -319,21 +319,21 @@ def test_the_printed_threshold_is_a_diamond_at_the_error_that_the_paper_allows(n
 
 def test_the_advised_frequency_ratio_is_a_line_in_both_panels():
     for axes in of_reference("fig14").axes:
-        (line,) = [each for each in axes.lines if each.get_label() == f"advised: {paper.STIFF:g}"]
+        (line,) = [line for line in axes.lines if line.get_label() == f"advised: {paper.STIFF:g}"]
         assert line.get_xdata() == [paper.STIFF, paper.STIFF]
 
 
 def test_other_parameters_have_neither_a_printed_nor_an_advised_frequency_ratio():
     (data,) = data_of("fig14")
-    found = words(figures.draw("fig14", with_parameters(data, amplitude=0.9)))
-    assert not any("printed" in text or "advised" in text for text in found)
+    texts = words(figures.draw("fig14", with_parameters(data, amplitude=0.9)))
+    assert not any("printed" in text or "advised" in text for text in texts)
 
 
 def test_another_tolerance_and_release_have_no_printed_value():
     (data,) = data_of("fig16")
-    found = words(figures.draw("fig16", with_parameters(data, tolerance=0.05)))
-    assert "tolerance 5 %" in found
-    assert not any("printed" in text for text in found)
+    texts = words(figures.draw("fig16", with_parameters(data, tolerance=0.05)))
+    assert "tolerance 5 %" in texts
+    assert not any("printed" in text for text in texts)
     force = words(figures.draw("fig16", with_parameters(data, release="force")))
     assert r"spring-damper, $\Lambda_F$" in force
     assert not any("printed" in text or r"\sqrt" in text for text in force)
@@ -350,8 +350,8 @@ def test_a_case_without_orbits():
 
 def test_one_case():
     (data,) = data_of("fig05")
-    found = words(figures.draw("fig05", data.isel(case=[1])))
-    assert {"$n=1$, $r=0.85$, $\\Lambda=1$", "spring-damper model"} <= set(found)
+    texts = words(figures.draw("fig05", data.isel(case=[1])))
+    assert {"$n=1$, $r=0.85$, $\\Lambda=1$", "spring-damper model"} <= set(texts)
 
 
 def test_several_cases_of_the_poincare_map():
@@ -494,8 +494,10 @@ def test_the_dark_region_of_each_panel_holds_the_orbits_that_fail():
         orbits = error.stack(orbit=("restitution", "place"))
         points = np.stack([orbits.restitution, orbits.place], axis=-1)
         fails = (orbits > 0.01).values
-        filled = [each for each in axes.collections if isinstance(each, QuadContourSet)]
-        regions = [each.get_paths()[0] for each in filled if each.filled]
+        filled = [
+            collection for collection in axes.collections if isinstance(collection, QuadContourSet)
+        ]
+        regions = [collection.get_paths()[0] for collection in filled if collection.filled]
         assert len(regions) == fails.any()
         for region in regions:
             inside = region.contains_points(points, radius=1e-9)
@@ -508,14 +510,18 @@ def test_the_dark_region_of_each_panel_holds_the_orbits_that_fail():
 def test_the_light_region_of_each_panel_is_where_the_period_has_doubled():
     data = reference("validity_map")
     for _, n, axes in panels_of_map(data, of_reference("validity_map")):
-        (light,) = [each for each in axes.collections if not isinstance(each, QuadContourSet)]
+        (light,) = [
+            collection
+            for collection in axes.collections
+            if not isinstance(collection, QuadContourSet)
+        ]
         edge = {tuple(point) for point in light.get_paths()[0].vertices}
         share = data.doubled_share.sel(n=n).values
         assert edge.issuperset(zip(data.restitution.values, 1 - share, strict=True))
         assert edge.issuperset(zip(data.restitution.values, np.ones_like(share), strict=True))
         # No panel counts its orbits as failing, so it is drawn above the dark region.
         assert axes.collections[-1] is light
-        assert all(light.get_zorder() >= each.get_zorder() for each in axes.collections)
+        assert all(light.get_zorder() >= collection.get_zorder() for collection in axes.collections)
         assert matplotlib.colors.to_rgba(light.get_facecolor()[0])[3] == 1
 
 
@@ -546,10 +552,10 @@ def test_each_point_of_the_regimes_lies_in_the_region_of_its_answer():
     line, axes = of_reference("regimes").axes
     names = ("within 1 %", "off by more", "period doubled", "in this model only")
     regions = [
-        each.get_paths()[0]
+        collection.get_paths()[0]
         for name in names
-        for each in axes.collections
-        if name in each.get_label()
+        for collection in axes.collections
+        if name in collection.get_label()
     ]
     contact = data[["saddle_node_amplitude", "period_doubling_amplitude"]]
     for ratio in (5.0, 50.0, 500.0):
@@ -565,7 +571,7 @@ def test_each_point_of_the_regimes_lies_in_the_region_of_its_answer():
             ]
             inside = [region.contains_point((amplitude, ratio)) for region in regions]
             # The region of the doubled period covers the first two.
-            inside[:2] = [each and not inside[2] for each in inside[:2]]
+            inside[:2] = [is_inside and not inside[2] for is_inside in inside[:2]]
             assert inside == wanted, (amplitude, ratio)
     bars = {(bar.get_x(), bar.get_x() + bar.get_width()) for bar in line.patches}
     assert bars == {(0, 1), tuple(data.amplitude.values[[0, -1]])}

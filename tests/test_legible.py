@@ -17,7 +17,7 @@ from paper_replication.configuration import stages
 from paper_replication.datasets import computed
 from paper_replication.drawing import POINTS, ink
 
-STAGES = {name: each for each, section in stages(CONFIG).items() for name in section}
+STAGES = {name: section for section, names in stages(CONFIG).items() for name in names}
 """The stage of each entry."""
 
 
@@ -61,22 +61,24 @@ def crossed(line: Line2D, box: Bbox) -> bool:
 def faults(figure: Figure) -> set[str]:
     """Texts that meet, that leave the page, or on which a mark or a curve is."""
     artists = drawn(figure)
-    texts = {each: ink(each) for each in artists if isinstance(each, Text) and each.get_text()}
+    texts = {
+        artist: ink(artist) for artist in artists if isinstance(artist, Text) and artist.get_text()
+    }
     page = figure.bbox.padded(1)
-    found = set()
+    messages = set()
     for text, box in texts.items():
         if not (page.contains(*box.min) and page.contains(*box.max)):
-            found.add(f"{text.get_text()} leaves the page")
+            messages.add(f"{text.get_text()} leaves the page")
         for line in artists:
             if isinstance(line, Line2D):
-                if any(box.overlaps(each) for each in marks(line)):
-                    found.add(f"{line.get_marker()} is on {text.get_text()}")
+                if any(box.overlaps(mark) for mark in marks(line)):
+                    messages.add(f"{line.get_marker()} is on {text.get_text()}")
                 if crossed(line, box):
-                    found.add(f"a curve is on {text.get_text()}")
+                    messages.add(f"a curve is on {text.get_text()}")
     for (one, box), (other, beside) in combinations(texts.items(), 2):
         if box.overlaps(beside):
-            found.add(f"{one.get_text()} meets {other.get_text()}")
-    return found
+            messages.add(f"{one.get_text()} meets {other.get_text()}")
+    return messages
 
 
 def amplitude(n: int, r: float, place: float) -> float:
@@ -137,8 +139,8 @@ EXTREMES = [
         {
             "n": 20,
             "cases": [
-                each | {"frequency_ratio": ratio}
-                for each, ratio in zip(
+                case | {"frequency_ratio": ratio}
+                for case, ratio in zip(
                     cases(20, (0.65, 0.5), (0.9, 0.5), (0.98, 0.5)),
                     (20.0, 1000.0, 345.6),
                     strict=True,

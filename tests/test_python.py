@@ -92,10 +92,14 @@ def test_a_named_python_is_not_replaced(run):
 def test_the_versions_of_python_are_the_same_everywhere():
     """In the three packages, the classifiers, both READMEs that name them, and CI."""
     folders = [ROOT, ROOT / "extras/beyond", ROOT / "extras/contacts"]
-    projects = [tomllib.loads((each / "pyproject.toml").read_text("utf-8")) for each in folders]
-    assert {each["project"]["requires-python"] for each in projects} == {">=3.11,<3.15"}
+    projects = [tomllib.loads((folder / "pyproject.toml").read_text("utf-8")) for folder in folders]
+    assert {project["project"]["requires-python"] for project in projects} == {">=3.11,<3.15"}
     classifiers = projects[0]["project"]["classifiers"]
-    named = [each.rpartition(" ")[2] for each in classifiers if ":: Python :: 3." in each]
+    named = [
+        classifier.rpartition(" ")[2]
+        for classifier in classifiers
+        if ":: Python :: 3." in classifier
+    ]
     assert named == ["3.11", "3.12", "3.13", "3.14"]
     for page in "README.md", "extras/contacts/README.md":
         assert "Python 3.11 to 3.14" in (ROOT / page).read_text("utf-8")
@@ -111,7 +115,7 @@ def test_make_has_a_cache_for_snakemake_without_a_writable_home(package, tmp_pat
     def cache(**given):
         rule = "cache: ; @echo $$XDG_CACHE_HOME"
         command = ["make", "-s", "-C", str(package), f"--eval={rule}", "cache"]
-        environment = {name: each for name, each in os.environ.items() if "XDG" not in name}
+        environment = {name: value for name, value in os.environ.items() if "XDG" not in name}
         return subprocess.check_output(command, env=environment | given, text=True).strip()
 
     assert cache(HOME="/dev/null/none") == f"{package}/.snakemake/cache"

@@ -168,7 +168,7 @@ def imports(package: str) -> set[str]:
     trees = [ast.parse(path.read_text("utf-8")) for path in (ROOT / "src" / package).glob("*.py")]
     nodes = [node for tree in trees for node in ast.walk(tree)]
     names = [node.module for node in nodes if isinstance(node, ast.ImportFrom)]
-    names += [each.name for node in nodes if isinstance(node, ast.Import) for each in node.names]
+    names += [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
     return {name.partition(".")[0] for name in names}
 
 
@@ -183,14 +183,19 @@ def test_no_package_has_code_of_its_own():
     for file in (ROOT / "src").rglob("__init__.py"):
         documentation, *others = ast.parse(file.read_text("utf-8")).body
         assert isinstance(documentation, ast.Expr), file
-        assert [ast.unparse(each).partition(" = ")[0] for each in others] in ([], ["__version__"])
+        assert [ast.unparse(statement).partition(" = ")[0] for statement in others] in (
+            [],
+            ["__version__"],
+        )
 
 
 def test_a_wheel_has_every_file_of_its_packages():
     setuptools = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
     patterns = ["*.py", *setuptools["package-data"]["*"]]
     packages = [path.parent for path in (ROOT / "src").rglob("__init__.py")]
-    packed = {file for package in packages for each in patterns for file in package.glob(each)}
+    packed = {
+        file for package in packages for pattern in patterns for file in package.glob(pattern)
+    }
     files = {path for package in packages for path in package.rglob("*.*")}
     assert {path for path in files if path.suffix != ".pyc"} == packed
 
@@ -200,9 +205,9 @@ def modules_of(script: Path) -> set[str]:
     module, each with its folder.
     """
     # A project says where files are, and makes pictures for comparisons.
-    found = ModuleFinder(path=[str(ROOT / "src")], excludes=["project"])
-    found.run_script(str(script))
-    files = {Path(each.__file__) for each in found.modules.values() if each.__file__}
+    finder = ModuleFinder(path=[str(ROOT / "src")], excludes=["project"])
+    finder.run_script(str(script))
+    files = {Path(module.__file__) for module in finder.modules.values() if module.__file__}
     return {in_folder(path) for path in files if path.name != "__init__.py"}
 
 
@@ -224,10 +229,10 @@ def test_rules_list_the_modules_and_templates_that_their_scripts_read(stubs):
     for name, files in inputs.items():
         folder = ROOT / ("src/carbonelli2011/stages" if name in COMPUTED else "workflow/scripts")
         assert f"{folder.name}/{name}.py" in files
-        found = modules_of(folder / f"{name}.py") - NO_NUMBER
-        assert found <= files, name
+        modules = modules_of(folder / f"{name}.py") - NO_NUMBER
+        assert modules <= files, name
         # All models count for all that computes.
-        assert {file for file in files - found - MODELS if file.endswith(".py")} == set(), name
+        assert {file for file in files - modules - MODELS if file.endswith(".py")} == set(), name
     templates = {in_folder(path) for path in (ROOT / "src").rglob("*.j2")} - NO_NUMBER
     assert {file for file in inputs["article"] if file.endswith(".j2")} == templates
 

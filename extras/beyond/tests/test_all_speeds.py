@@ -44,9 +44,9 @@ def scanned(r, n):
 def test_all_speeds_of_a_scan_are_found(n):
     for r in functions():
         low, high = scanned(r, n)
-        found = closing_speeds(bb.Rigid(r), n)
-        assert len(found) == len(low)
-        assert np.all((low <= found) & (found <= high))
+        speeds = closing_speeds(bb.Rigid(r), n)
+        assert len(speeds) == len(low)
+        assert np.all((low <= speeds) & (speeds <= high))
 
 
 @pytest.mark.parametrize("k", range(0, 40, 4))
@@ -64,8 +64,8 @@ def test_orbits_are_those_of_the_scan_that_a_ball_follows(k):
             lands, closing, _ = leg(bb.Rigid(r(u)), amplitude, tau, u)
             if abs(lands - tau - 2 * np.pi) < 1e-6 and abs(closing - u) < 1e-6:
                 expected.append((tau % (2 * np.pi), u))
-    found = [(each.times[0], each.speeds[0]) for each in bb.orbits(ball, amplitude=amplitude)]
-    np.testing.assert_allclose(sorted(found), sorted(expected), rtol=0, atol=1e-9)
+    impacts = [(orbit.times[0], orbit.speeds[0]) for orbit in bb.orbits(ball, amplitude=amplitude)]
+    np.testing.assert_allclose(sorted(impacts), sorted(expected), rtol=0, atol=1e-9)
 
 
 def test_a_double_root_is_one_orbit_on_each_side():
@@ -92,11 +92,11 @@ def test_the_list_of_a_constant_restitution_is_complete(r, table):
     for n, amplitude in ((1, 0.4), (1, 1.3), (2, 2.9)):
         ball = bb.Rigid(r)
         every = instants(ball, n, amplitude, table)
-        found = bb.orbits(ball, periods=n, amplitude=amplitude, table=table)
+        orbits = bb.orbits(ball, periods=n, amplitude=amplitude, table=table)
         equations = bb.OrbitEquations(ball, 1, n, table=table)
         followed = equations.admissible(np.insert(every, 2, amplitude, axis=1))
         expected = sorted(map(tuple, every[followed]))
-        listed = sorted((each.times[0], each.speeds[0]) for each in found)
+        listed = sorted((orbit.times[0], orbit.speeds[0]) for orbit in orbits)
         np.testing.assert_allclose(np.reshape(listed, (-1, 2)), np.reshape(expected, (-1, 2)))
 
 

@@ -36,11 +36,11 @@ def test_along_the_amplitude_special_orbits_are_the_closed_form(n, r):
     fold, flip = saddle_node(n, r), period_doubling(n, r)
     start = orbit(Rigid(r), amplitude=(fold + flip) / 2, n=n)
     branch = follow(start, to=(0.9 * fold, 1.1 * flip))
-    assert [each.kind for each in branch.special] == ["saddle-node", "period doubling"]
-    found = [each.amplitude for each in branch.special]
-    assert found == pytest.approx([fold, flip], abs=LOCATED)
+    assert [special.kind for special in branch.special] == ["saddle-node", "period doubling"]
+    amplitudes = [special.amplitude for special in branch.special]
+    assert amplitudes == pytest.approx([fold, flip], abs=LOCATED)
     # At the saddle-node the phase is 0; the stable part is between it and the doubling.
-    above = np.array([each.phase > 0 for each in branch.orbits])
+    above = np.array([periodic_orbit.phase > 0 for periodic_orbit in branch.orbits])
     assert np.array_equal(branch.stable, above & (branch.values < flip))
     assert limits(Rigid(r), n=n).saddle_node.amplitude == pytest.approx(fold, abs=LOCATED)
     assert limits(Rigid(r), n=n).period_doubling.amplitude == pytest.approx(flip, abs=LOCATED)
@@ -94,8 +94,10 @@ def test_along_any_parameter_special_orbits_are_those_of_the_replication(release
     }
     for name, (start, at, to, expected) in along.items():
         branch = follow(orbit(start, amplitude=at), along=name, to=to)
-        found = [each.z[-1] for each in branch.special if each.kind == "period doubling"]
-        assert min(abs(np.array(found) - expected)) < LOCATED, name
+        doublings = [
+            special.z[-1] for special in branch.special if special.kind == "period doubling"
+        ]
+        assert min(abs(np.array(doublings) - expected)) < LOCATED, name
 
 
 @pytest.mark.parametrize(
@@ -104,11 +106,11 @@ def test_along_any_parameter_special_orbits_are_those_of_the_replication(release
 )
 def test_limits_without_damping(ratio, n, expected):
     """The doubling is at Λ = |1 - 1/ϖ²|/|cos(π/2ϖ)|, and there is no saddle-node above Λ = 0."""
-    found = limits(SpringDamper(ratio, damping_ratio=0.0), n=n)
+    orbit_limits = limits(SpringDamper(ratio, damping_ratio=0.0), n=n)
     formula = abs(1 - 1 / ratio**2) / abs(np.cos(np.pi / (2 * ratio)))
-    assert isinstance(found.saddle_node, OrbitNotFound)
-    assert found.period_doubling.amplitude == pytest.approx(expected, abs=2e-10)
-    assert found.period_doubling.amplitude == pytest.approx(formula, abs=LOCATED)
+    assert isinstance(orbit_limits.saddle_node, OrbitNotFound)
+    assert orbit_limits.period_doubling.amplitude == pytest.approx(expected, abs=2e-10)
+    assert orbit_limits.period_doubling.amplitude == pytest.approx(formula, abs=LOCATED)
 
 
 def first_doubling(ball, amplitude, to=3.0):
@@ -119,8 +121,8 @@ def test_an_elastic_cascade_has_the_doublings_that_a_fixed_first_step_loses():
     """The doubling of 16 impacts is at 1.26595802161 in 40 digits; the ratio tends to 8.7211."""
     doubling = first_doubling(Rigid(1.0), 0.5)
     branches = cascade(doubling, to=3.0)
-    assert [each.impacts for each in branches] == [2, 4, 8, 16, 32, 64]
-    values = np.array([doubling.amplitude, *(each.values[-1] for each in branches)])
+    assert [branch.impacts for branch in branches] == [2, 4, 8, 16, 32, 64]
+    values = np.array([doubling.amplitude, *(branch.values[-1] for branch in branches)])
     assert values[5] == pytest.approx(1.26595802161, abs=5e-12)
     gaps = np.diff(values)
     assert gaps[-2] / gaps[-1] == pytest.approx(8.7211, rel=1e-3)
@@ -139,15 +141,15 @@ def test_cascades_are_complete_up_to_64_impacts(ball):
     """The ratio of successive intervals tends to 4.6692, with errors that fall as its powers."""
     doubling = limits(ball).period_doubling
     branches = cascade(doubling, to=4.0)
-    assert [each.impacts for each in branches] == [2, 4, 8, 16, 32, 64]
-    values = np.array([doubling.amplitude, *(each.values[-1] for each in branches)])
+    assert [branch.impacts for branch in branches] == [2, 4, 8, 16, 32, 64]
+    values = np.array([doubling.amplitude, *(branch.values[-1] for branch in branches)])
     gaps = np.diff(values)
     assert gaps[-2] / gaps[-1] == pytest.approx(4.6692, rel=2e-3)
     if ball == Rigid(0.5):
         assert values[6] == pytest.approx(1.70491466, abs=5e-9)
     # Between two doublings orbits are stable; one with a multiplier of 1 or -1 is at each end.
-    for each in branches:
-        assert each.stable[1:-1].all() and each.admissible[1:-1].all()
+    for branch in branches:
+        assert branch.stable[1:-1].all() and branch.admissible[1:-1].all()
 
 
 @mpmath.workdps(30)
@@ -188,14 +190,19 @@ def test_an_elastic_cascade_ends_where_its_orbits_lose_their_symmetry():
     (only,) = cascade(doubling, to=3.0)
     assert only.special == () and only.impacts == 2
     assert len(orbits(Rigid(1.0), impacts=2, periods=6, amplitude=1.58)) == 1
-    found = orbits(Rigid(1.0), impacts=2, periods=6, amplitude=1.6)
-    symmetric, *both = sorted(found, key=lambda each: each.stable)
-    assert not symmetric.stable and [each.stable for each in both] == [True, True]
+    periodic_orbits = orbits(Rigid(1.0), impacts=2, periods=6, amplitude=1.6)
+    symmetric, *both = sorted(periodic_orbits, key=lambda periodic_orbit: periodic_orbit.stable)
+    assert not symmetric.stable and [periodic_orbit.stable for periodic_orbit in both] == [
+        True,
+        True,
+    ]
     # Reversed, an impact at τ is one at π - τ with the same speed.
-    before, after = ([each.times[i] % (2 * np.pi) for i in (0, 1)] for each in both)
+    before, after = (
+        [periodic_orbit.times[i] % (2 * np.pi) for i in (0, 1)] for periodic_orbit in both
+    )
     assert sorted((np.pi - tau) % (2 * np.pi) for tau in before) == pytest.approx(sorted(after))
     branches = cascade(follow(both[0], to=3.0).first("period doubling"), to=3.0, impacts=8)
-    assert [each.special[-1].kind for each in branches] == 2 * ["period doubling"]
+    assert [branch.special[-1].kind for branch in branches] == 2 * ["period doubling"]
 
 
 def test_a_branch_along_the_frequency_ratio_takes_steps_in_proportion_to_it():
@@ -205,10 +212,10 @@ def test_a_branch_along_the_frequency_ratio_takes_steps_in_proportion_to_it():
     assert up.end == "frequency_ratio = 1000000 is reached" and len(up) < 100 and len(down) < 100
     assert down.orbits[-1].phase == pytest.approx(start.phase, abs=1e-10)
     # As digits allow, each orbit is that which is found at its ϖ, whatever the size of this number.
-    for each in (up.orbits[-1], up.orbits[-9], down.orbits[9]):
-        alone = orbit(each.ball, amplitude=1.0)
-        assert abs(each.times - alone.times).max() < 1e-11
-        assert abs(each.speeds - alone.speeds).max() < 1e-11
+    for periodic_orbit in (up.orbits[-1], up.orbits[-9], down.orbits[9]):
+        alone = orbit(periodic_orbit.ball, amplitude=1.0)
+        assert abs(periodic_orbit.times - alone.times).max() < 1e-11
+        assert abs(periodic_orbit.speeds - alone.speeds).max() < 1e-11
 
 
 def test_a_refined_branch_has_no_corners():
@@ -244,9 +251,9 @@ def test_a_slow_start_grazes_the_table_at_once(r):
     # To the third order in the time, δ = wt - at²/2 + xt³/6 with a = 1 - y has a double zero here.
     a = np.sqrt(16 * np.pi * r * x / 3)
     amplitude, _ = fsolve(touch, (np.hypot(x, 1 - a), 1.5 * a / x), xtol=1e-12)
-    found = follow(orbit(Rigid(r), amplitude=3.45), to=3.145)
-    assert [each.kind for each in found.special] == ["grazing of a flight"]
-    assert found.special[0].amplitude == pytest.approx(amplitude, abs=1e-10)
+    branch = follow(orbit(Rigid(r), amplitude=3.45), to=3.145)
+    assert [special.kind for special in branch.special] == ["grazing of a flight"]
+    assert branch.special[0].amplitude == pytest.approx(amplitude, abs=1e-10)
 
 
 def test_limits_are_shown_in_a_line():
@@ -307,7 +314,7 @@ def test_a_doubled_branch_ends_where_it_is_told_to():
         assert branch.orbits[-1].stable and branch.impacts == 2
     # ξ² is proportional to the distance in Λ: the orbits of two impacts are on a parabola.
     near = [follow(doubling, to=doubling.amplitude + d).orbits[-1] for d in (1e-6, 4e-6)]
-    apart = [abs(np.diff(each.speeds)[0]) for each in near]
+    apart = [abs(np.diff(periodic_orbit.speeds)[0]) for periodic_orbit in near]
     assert apart[1] / apart[0] == pytest.approx(2, rel=1e-4)
 
 
@@ -334,7 +341,7 @@ def test_from_a_saddle_node_the_stable_branch_is_followed_and_both_if_both_ways(
     lowest = np.argmin(both.values)
     assert both.values[[0, -1]] == pytest.approx([1.3, 1.3]) and 0 < lowest < len(both) - 1
     assert not both.stable[:lowest].any() and both.stable[lowest + 1 :].all()
-    assert all(each.kind != "saddle-node" for each in both.special)
+    assert all(special.kind != "saddle-node" for special in both.special)
 
 
 @pytest.mark.parametrize("name", ["saddle node", "saddle-node", "Saddle-Node"])
@@ -379,11 +386,14 @@ def test_the_grazing_of_a_flight_and_the_branch_with_one_impact_more():
 def test_the_grazing_of_an_impact_is_that_of_a_flight_of_the_orbit_without_it():
     three = orbits(Rigid(0.8), impacts=3, periods=3, amplitude=1.2)
     two = orbits(Rigid(0.8), impacts=2, periods=3, amplitude=1.3)
-    ends = [follow(each, to=20.0) for each in three]
+    ends = [follow(periodic_orbit, to=20.0) for periodic_orbit in three]
     impacts = [b.special[-1].amplitude for b in ends if b.special[-1].kind.endswith("an impact")]
-    flights = [follow(each, to=20.0).first("grazing of a flight").amplitude for each in two]
+    flights = [
+        follow(periodic_orbit, to=20.0).first("grazing of a flight").amplitude
+        for periodic_orbit in two
+    ]
     assert impacts and min(abs(np.subtract.outer(impacts, flights)).ravel()) < 1e-9
-    assert all("lands with the speed of the table" in each.end for each in ends)
+    assert all("lands with the speed of the table" in branch.end for branch in ends)
     with pytest.raises(OrbitNotFound, match="branches end at orbits of this kind"):
         follow(ends[0].special[-1], to=1.0)
 
@@ -394,14 +404,14 @@ def test_no_special_orbit_hides_before_the_end_of_a_branch():
     flight = follow(orbit(ball, amplitude=2.0, side="unstable"), to=6.0)
     grazing = flight.first("grazing of a flight")
     back = follow(grazing, to=2.3)
-    expected = {each.kind: each.amplitude for each in back.special}
+    expected = {special.kind: special.amplitude for special in back.special}
     assert expected.keys() == {"saddle-node", "period doubling"}
     branch = follow(back.orbits[-1], to=2.5)
-    assert {each.kind: each.amplitude for each in branch.special} == pytest.approx(
+    assert {special.kind: special.amplitude for special in branch.special} == pytest.approx(
         expected | {"grazing of an impact": grazing.amplitude}, abs=LOCATED
     )
     # Rounding decides on tr/(1 + det) at the end itself, but nothing is divided by zero.
-    turns = np.array([each.turn for each in branch.orbits])
+    turns = np.array([periodic_orbit.turn for periodic_orbit in branch.orbits])
     assert np.abs(np.diff(np.arctan(turns[:-1]))).max() < LARGEST_TURN
 
 
@@ -409,11 +419,19 @@ def test_no_special_orbit_hides_where_multipliers_are_large():
     """From the grazing on tr/(1 + det) falls from 61 to less than -30, within 1e-6 of Λ."""
     ball = SpringDamper(20.0, restitution=0.65)
     near = orbits(ball, amplitude=3.0, impacts=2, periods=3)
-    flights = [s for each in near for s in follow(each, to=3.2).special if "flight" in s.kind]
-    grazing = next(each for each in flights if abs(each.amplitude - 3.1019022) < 1e-7)
+    flights = [
+        s
+        for periodic_orbit in near
+        for s in follow(periodic_orbit, to=3.2).special
+        if "flight" in s.kind
+    ]
+    grazing = next(special for special in flights if abs(special.amplitude - 3.1019022) < 1e-7)
     branch = follow(grazing, to=3.4)
-    assert [each.kind for each in branch.special] == ["saddle-node", "period doubling"]
-    assert branch.orbits[1].turn > 50 and min(each.turn for each in branch.orbits) < -30
+    assert [special.kind for special in branch.special] == ["saddle-node", "period doubling"]
+    assert (
+        branch.orbits[1].turn > 50
+        and min(periodic_orbit.turn for periodic_orbit in branch.orbits) < -30
+    )
 
 
 def test_a_lost_release_is_an_orbit_that_leaves_the_table_with_no_speed():
@@ -438,7 +456,7 @@ def test_the_grazing_of_a_release_touches_the_release_within_a_contact():
     place = np.argmin(np.abs(branch.z - touch.z).max(axis=1))
     assert len(set(branch.admissible[place - 2 : place + 3])) == 2
     on = follow(touch, to=0.92)
-    assert on.impacts == 1 and touch.z[-1] not in [each.z[-1] for each in on.special]
+    assert on.impacts == 1 and touch.z[-1] not in [special.z[-1] for special in on.special]
 
 
 def test_a_flight_vanishes_where_permanent_contact_begins():
@@ -450,7 +468,7 @@ def test_a_flight_vanishes_where_permanent_contact_begins():
     assert "the contacts before and after a flight merge" in branch.end
     assert branch.special[-1].kind == "vanishing flight"
     # An impact vanishes at the same place: the end has one name.
-    assert np.sum([abs(each.amplitude - limit) < 1e-6 for each in branch.special]) == 1
+    assert np.sum([abs(special.amplitude - limit) < 1e-6 for special in branch.special]) == 1
     # The equations are singular there, so that half of the digits are certain.
     assert branch.values[-1] == pytest.approx(limit, abs=1e-7)
     assert branch.admissible[:-1].all()
@@ -484,7 +502,7 @@ def test_a_closed_branch_ends_at_its_start():
     assert branch.end == "the branch is closed: it is back at its start"
     assert branch.orbits[-1].phase == pytest.approx(branch.orbits[0].phase, abs=1e-12)
     assert len(branch.special) == 12
-    assert len({(each.kind, round(each.z[-1], 9)) for each in branch.special}) == 12
+    assert len({(special.kind, round(special.z[-1], 9)) for special in branch.special}) == 12
 
 
 def test_rows_side_by_side_are_the_single_branches():
@@ -506,10 +524,12 @@ def test_rows_side_by_side_are_the_single_branches():
         alone = follow(start, to=float(goal))
         assert isinstance(branch, FollowedBranch) and branch.end == alone.end
         assert branch.values == pytest.approx(alone.values, abs=1e-9)
-        assert [each.kind for each in branch.special] == [each.kind for each in alone.special]
+        assert [special.kind for special in branch.special] == [
+            special.kind for special in alone.special
+        ]
         for one, other in zip(branch.special, alone.special, strict=True):
             assert one.z == pytest.approx(other.z, abs=1e-8)
-        kinds |= {each.kind for each in branch.special}
+        kinds |= {special.kind for special in branch.special}
     assert {"saddle-node", "period doubling"} <= kinds
 
 
@@ -603,15 +623,19 @@ def random_ball(number, random):
     return ball, r, ("amplitude", "frequency", *ball.parameters)
 
 
-def closes(found):
+def closes(periodic_orbit):
     """The distance by which one period by an independent code misses the start of an orbit."""
-    if not isinstance(found.ball, Corrected):
-        return np.abs(around(found)[0] - [found.times[0], found.speeds[0]]).max()
+    if not isinstance(periodic_orbit.ball, Corrected):
+        return np.abs(
+            around(periodic_orbit)[0] - [periodic_orbit.times[0], periodic_orbit.speeds[0]]
+        ).max()
     # The impulse of the instant is 2nπ, and so an orbit is a point of a line of Λ (cos ψ, sin ψ).
-    r, _, _, loss = (float(each) for each in found.ball.signature(found.speeds[0]))
-    line = (1 + r) * np.cos(found.times[0]) - loss * np.sin(found.times[0])
-    half = np.pi * found.periods
-    return abs(found.amplitude * line - half * (1 - r) + loss)
+    r, _, _, loss = (
+        float(quantity) for quantity in periodic_orbit.ball.signature(periodic_orbit.speeds[0])
+    )
+    line = (1 + r) * np.cos(periodic_orbit.times[0]) - loss * np.sin(periodic_orbit.times[0])
+    half = np.pi * periodic_orbit.periods
+    return abs(periodic_orbit.amplitude * line - half * (1 - r) + loss)
 
 
 def test_random_branches_of_all_models_lead_to_orbits_of_independent_codes():
@@ -626,7 +650,7 @@ def test_random_branches_of_all_models_lead_to_orbits_of_independent_codes():
         value = one.parameters.get(along, np.sqrt(one.amplitude))
         goal = value * random.uniform(0.9, 1.1)
         branch = follow(one, along=along, to=goal, points=40)
-        last = [each for each in branch.orbits if each.admissible][-1]
+        last = [periodic_orbit for periodic_orbit in branch.orbits if periodic_orbit.admissible][-1]
         # The integrator is right to some 1e-11, which an unstable orbit stretches.
         assert closes(last) < 1e-9 * (1 + np.abs(last.multipliers).max()), (number, branch)
         counted += last.z[-1] != value
@@ -644,20 +668,20 @@ def test_limits_start_from_the_first_orbit_that_a_ball_follows_or_else_the_first
     asked = dict.fromkeys(answers, 0)
 
     def search(equations, amplitude, impacts):
-        found = []
+        pairs = []
         for row in (equations.periods - 1).tolist():
             some = answers[row]
-            found.append(some[min(asked[row], len(some) - 1)])
+            pairs.append(some[min(asked[row], len(some) - 1)])
             asked[row] += 1
-        orbits, done = zip(*found, strict=True)
+        orbits, done = zip(*pairs, strict=True)
         return list(orbits), np.array(done)
 
     monkeypatch.setattr(continuation, "near_instants", search)
     monkeypatch.setattr(continuation, "shortest_contacts", search)
     balls = Rigid(np.array([0.5, 0.5, 0.5]))
-    found = continuation._between_limits(OrbitEquations(balls, 1, np.array([1, 2, 3])))
-    assert found[0] == "c" and found[2] == "a"
-    assert isinstance(found[1], OrbitNotFound)
+    starts = continuation._between_limits(OrbitEquations(balls, 1, np.array([1, 2, 3])))
+    assert starts[0] == "c" and starts[2] == "a"
+    assert isinstance(starts[1], OrbitNotFound)
     assert asked[0] == 4
 
 

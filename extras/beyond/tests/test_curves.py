@@ -51,7 +51,7 @@ def test_curves_of_the_restitution_model_are_closed_forms(rigid, kind):
     # Adjacent points of a picture are close, in units that are changes of the logarithm.
     assert np.abs(np.diff(np.log(curve.refined().z[:, -2]))).max() < 0.1
     assert curve.kind == kind
-    assert {each.kind for each in curve.orbits} == {kind}
+    assert {special.kind for special in curve.orbits} == {kind}
     if kind == "period doubling":
         assert (curve.start, curve.end) == (
             "amplitude = 3 is reached",
@@ -100,10 +100,10 @@ def test_flights_graze_along_a_curve():
     ranges = {"amplitude": (0.5, 4.0), "restitution": (0.1, 1.0)}
     curve = special_curve(grazing, ranges=ranges)
     assert "restitution = 1 is reached" in (curve.start, curve.end)
-    for each in curve.orbits[1:-1]:
-        times = np.linspace(0.5, each.flight_time - 0.01, 20001)
-        speed = each.relative_bounce_velocity
-        gaps = flight(times, each.times[0], 0.0, speed, each.amplitude)[0]
+    for special in curve.orbits[1:-1]:
+        times = np.linspace(0.5, special.flight_time - 0.01, 20001)
+        speed = special.relative_bounce_velocity
+        gaps = flight(times, special.times[0], 0.0, speed, special.amplitude)[0]
         # Samples miss the lowest point by half a step: δ″ (1.5e-4)²/2.
         assert gaps.min() == pytest.approx(0.0, abs=1e-7)
 
@@ -127,9 +127,9 @@ def test_a_frequency_is_one_of_two_parameters():
     doubling = follow(orbit(ball, amplitude=0.9), to=1.3).first("period doubling")
     ranges = {"frequency": (0.5, 1.5), "restitution": (0.5, 1.0)}
     curve = special_curve(doubling, along=("frequency", "restitution"), ranges=ranges)
-    for each in curve.orbits[::4]:
-        assert each.amplitude == pytest.approx(each.parameters["frequency"] ** 2, rel=ROUNDED)
-        stroke = each.parameters["frequency_ratio"] ** 2 * each.amplitude
+    for special in curve.orbits[::4]:
+        assert special.amplitude == pytest.approx(special.parameters["frequency"] ** 2, rel=ROUNDED)
+        stroke = special.parameters["frequency_ratio"] ** 2 * special.amplitude
         assert stroke == pytest.approx(25.0**2 * doubling.amplitude, rel=ROUNDED)
 
 
@@ -186,4 +186,4 @@ def test_a_saddle_node_on_a_curve_of_grazings_is_a_special_orbit():
     start = orbit(Rigid(0.35), amplitude=2.0, side="unstable")
     grazing = follow(start, to=12.0).first("grazing of a flight")
     curve = special_curve(grazing, ranges={"amplitude": (0.2, 12.0), "restitution": (0.02, 1.0)})
-    assert [each.kind for each in curve.special] == ["saddle-node"]
+    assert [special.kind for special in curve.special] == ["saddle-node"]

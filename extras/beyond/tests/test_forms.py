@@ -25,11 +25,11 @@ COMPLIANT = SpringDamper(10.0, restitution=0.85)
 @pytest.fixture(scope="module")
 def doublings():
     """Period doublings of orbits with one and two impacts."""
-    found = []
+    doublings = []
     for ball, amplitude, to in ((Rigid(0.5), 1.4, 1.8), (COMPLIANT, 1.0, 1.3)):
         first = follow(orbit(ball, amplitude=amplitude), to=to).first("period doubling")
-        found += [first, follow(first, to=to).first("period doubling")]
-    return found
+        doublings += [first, follow(first, to=to).first("period doubling")]
+    return doublings
 
 
 def difference_of_halves(orbit, k):
@@ -63,7 +63,7 @@ def test_the_rate_is_that_of_the_multiplier(doublings):
         beside = [
             orbit(doubling.ball, amplitude=doubling.amplitude + side * step) for side in (-1, 1)
         ]
-        below, above = (each.multipliers[0].real for each in beside)
+        below, above = (periodic_orbit.multipliers[0].real for periodic_orbit in beside)
         # A central difference: the error is one of the square of the step.
         assert -(above - below) / (2 * step) == pytest.approx(form.rate, rel=1e-6)
         assert form.other == pytest.approx(doubling.multipliers[1].real, rel=1e-8)
@@ -130,7 +130,7 @@ def test_orbits_with_one_impact_more_begin_at_the_grazing(grazings):
         assert (more.impacts, more.periods) == (2, 1)
         near = more.orbits[1]
         assert (near.amplitude > grazing.amplitude) == form.opens_upwards
-        good = [each for each in more.orbits if each.admissible]
+        good = [periodic_orbit for periodic_orbit in more.orbits if periodic_orbit.admissible]
         assert good
         (time, speed), _ = integrated.around(good[-1])
         # The integrator of the contact is the less accurate of the two.

@@ -37,11 +37,11 @@ def test_a_curve_ends_where_the_multipliers_are_real(torus):
     ranges = {"amplitude": (0.1, 2.0), "w": (0.5, 6.0)}
     curve = bb.special_curve(torus, along=("amplitude", "w"), ranges=ranges)
     assert curve.start.startswith("saddle-node") and curve.end.startswith("period doubling")
-    for each in curve.orbits[1:-1]:
-        assert np.abs(each.multipliers) == pytest.approx(1, abs=1e-12)
-    for each, resonance in ((curve.orbits[0], "1:1"), (curve.orbits[-1], "1:2")):
+    for orbit in curve.orbits[1:-1]:
+        assert np.abs(orbit.multipliers) == pytest.approx(1, abs=1e-12)
+    for orbit, resonance in ((curve.orbits[0], "1:1"), (curve.orbits[-1], "1:2")):
         with pytest.raises(ValueError, match=f"strong resonance {resonance}, which has"):
-            bb.normal_form(each)
+            bb.normal_form(orbit)
 
 
 def test_the_normal_form(torus):
@@ -61,9 +61,9 @@ def test_the_normal_form(torus):
     ("w", "stable"), [(3.2, [(0.48791, 1.10858)]), (2.37, [(0.30449, 0.48361)]), (2.0, [])]
 )
 def test_ranges_of_stable_orbits(w, stable):
-    found = bb.limits(LAW.at(w=w))
-    assert np.array(found.stable_ranges) == pytest.approx(np.array(stable), abs=1e-5)
-    assert ("stable" in repr(found)) == (w != 3.2)
+    limits = bb.limits(LAW.at(w=w))
+    assert np.array(limits.stable_ranges) == pytest.approx(np.array(stable), abs=1e-5)
+    assert ("stable" in repr(limits)) == (w != 3.2)
 
 
 def test_a_shaker_asks_the_multipliers():
@@ -77,8 +77,8 @@ def test_a_shaker_asks_the_multipliers():
 def test_an_elastic_ball_passes_nothing():
     elastic = bb.limits(bb.Rigid(1.0), n=3)
     assert elastic.stable_ranges == ((1e-6, elastic.period_doubling.amplitude),)
-    for each in bb.orbits(bb.SpringDamper(10.0, 1.0), impacts=2, periods=2, amplitude=1.6):
-        kinds = {special.kind for special in bb.follow(each, to=0.6).special}
+    for orbit in bb.orbits(bb.SpringDamper(10.0, 1.0), impacts=2, periods=2, amplitude=1.6):
+        kinds = {special.kind for special in bb.follow(orbit, to=0.6).special}
         assert "Neimark-Sacker" not in kinds
 
 
@@ -90,17 +90,17 @@ def test_two_points_in_one_step_are_found():
     )
     for w in (2.6, 3.2, 4.4):
         branch = bb.follow(bb.orbit(law.at(w=w), amplitude=0.9), along="w", to=1.0)
-        places = [each.z[-1] for each in branch.special]
+        places = [special.z[-1] for special in branch.special]
         assert places == pytest.approx([1.88080, 1.72288], abs=1e-5)
 
 
 def test_thresholds_and_errors_say_where_the_orbit_is_unstable():
     ball = bb.SpringDamper(1.0, restitution=0.65)
     known = {"amplitude": [1.0, 1.2385, 1.6], "quantities": ["max_height", "saddle_node"]}
-    found = bb.error_thresholds(ball, **known)
-    height = found["max_height"]
+    thresholds = bb.error_thresholds(ball, **known)
+    height = thresholds["max_height"]
     assert height.unstable.tolist() == ["", "on the contact", "in both models"]
-    assert (found["saddle_node"].unstable == "").all()
+    assert (thresholds["saddle_node"].unstable == "").all()
     for amplitude, ratio, text in zip(
         known["amplitude"], height.ratio, height.unstable, strict=True
     ):

@@ -53,17 +53,21 @@ def test_the_orbits_of_the_restitution_model_are_its_closed_form(n):
     x = n * np.pi * (1 - r) / (1 + r)
     amplitude = np.hypot(x, RNG.uniform(0.1, 1.5, 20))
     for side, sign in (("stable", 1), ("unstable", -1)):
-        found = orbit(Rigid(r), amplitude=amplitude, n=n, side=side)
+        periodic_orbits = orbit(Rigid(r), amplitude=amplitude, n=n, side=side)
         phase = sign * np.arccos(x / amplitude)
         trace = 1 + r**2 - (1 + r) ** 2 * amplitude * np.sin(phase)
-        for i, each in enumerate(found):
-            assert each.phase == pytest.approx(phase[i], abs=ROUNDED)
+        for i, periodic_orbit in enumerate(periodic_orbits):
+            assert periodic_orbit.phase == pytest.approx(phase[i], abs=ROUNDED)
             # The first impact is in the first period of the table.
-            assert each.times[0] == pytest.approx(phase[i] % (2 * np.pi), abs=ROUNDED)
-            assert each.speeds[0] == pytest.approx(2 * np.pi * n / (1 + r[i]), abs=ROUNDED)
+            assert periodic_orbit.times[0] == pytest.approx(phase[i] % (2 * np.pi), abs=ROUNDED)
+            assert periodic_orbit.speeds[0] == pytest.approx(
+                2 * np.pi * n / (1 + r[i]), abs=ROUNDED
+            )
             expected = trace[i], r[i] ** 2
-            assert each.trace_and_determinant == pytest.approx(expected, abs=100 * ROUNDED)
-            assert each.stable == (abs(trace[i]) < 1 + r[i] ** 2)
+            assert periodic_orbit.trace_and_determinant == pytest.approx(
+                expected, abs=100 * ROUNDED
+            )
+            assert periodic_orbit.stable == (abs(trace[i]) < 1 + r[i] ** 2)
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
@@ -84,7 +88,11 @@ def test_the_orbits_of_the_replication_from_half_on(n, release):
         for i in np.flatnonzero(seen):
             ball = SpringDamper(ratios[i], damping_ratio=zeta, release=release)
             every = orbits(ball, amplitude=amplitude, periods=n)
-            near = [each for each in every if _same_phase(each.phase, quantities["phase"][i])]
+            near = [
+                periodic_orbit
+                for periodic_orbit in every
+                if _same_phase(periodic_orbit.phase, quantities["phase"][i])
+            ]
             assert len(near) == 1, (r, ratios[i])
             for name in ("impact_velocity", "bounce_velocity", "contact_duration"):
                 assert getattr(near[0], name) == pytest.approx(quantities[name][i], abs=1e-10)
@@ -117,22 +125,24 @@ def several_orbits():
 
 def test_an_integrated_ball_follows_the_orbits_and_their_derivatives():
     """A period by an integrator leads back, and differences of it are the monodromy matrix."""
-    for each in several_orbits():
-        start = np.array([each.times[0], each.speeds[0]])
-        end, highest = around(each)
-        stretch = 1 + np.abs(each.multipliers).max()
+    for periodic_orbit in several_orbits():
+        start = np.array([periodic_orbit.times[0], periodic_orbit.speeds[0]])
+        end, highest = around(periodic_orbit)
+        stretch = 1 + np.abs(periodic_orbit.multipliers).max()
         assert np.abs(end - start).max() < INTEGRATED * stretch
         # Heights are sampled 20001 times in a contact.
-        assert each.max_height == pytest.approx(highest, abs=1e-6)
+        assert periodic_orbit.max_height == pytest.approx(highest, abs=1e-6)
         h = 1e-4
         columns = []
         for shift in np.eye(2) * h:
-            columns.append((around(each, shift)[0] - around(each, -shift)[0]) / (2 * h))
+            columns.append(
+                (around(periodic_orbit, shift)[0] - around(periodic_orbit, -shift)[0]) / (2 * h)
+            )
         by_speed = np.diag([1, -1])
         numeric = by_speed @ np.array(columns).T @ by_speed
         # The differences err by h² times third derivatives, which are larger for unstable orbits.
-        assert np.abs(numeric - each.monodromy).max() < 1e-5 * stretch**3
-        assert each.admissible
+        assert np.abs(numeric - periodic_orbit.monodromy).max() < 1e-5 * stretch**3
+        assert periodic_orbit.admissible
 
 
 def test_a_contact_may_resume_after_a_release_by_the_force():
@@ -145,29 +155,33 @@ def test_a_contact_may_resume_after_a_release_by_the_force():
     z = np.append(np.stack([2 * np.pi * (turns - turns[0]) + phase, u, T], axis=-1), 1.20411)
     solution = newton(equations, z[np.newaxis])
     assert solution.found[0] and np.abs(solution.z[0] - z).max() < 1e-6
-    found = PeriodicOrbit(equations, solution.z[0])
-    assert found.speeds.min() < -0.01 and found.stable and found.admissible
-    slow = int(np.argmin(found.speeds))
-    end, gap, speed, _ = contact(ball, found.amplitude, found.times[slow], found.speeds[slow])
-    duration = end - found.times[slow]
-    assert duration == pytest.approx(found.contact_duration[slow], abs=INTEGRATED)
-    assert speed == pytest.approx(found.relative_bounce_velocity[slow], abs=INTEGRATED)
+    periodic_orbit = PeriodicOrbit(equations, solution.z[0])
+    assert (
+        periodic_orbit.speeds.min() < -0.01 and periodic_orbit.stable and periodic_orbit.admissible
+    )
+    slow = int(np.argmin(periodic_orbit.speeds))
+    end, gap, speed, _ = contact(
+        ball, periodic_orbit.amplitude, periodic_orbit.times[slow], periodic_orbit.speeds[slow]
+    )
+    duration = end - periodic_orbit.times[slow]
+    assert duration == pytest.approx(periodic_orbit.contact_duration[slow], abs=INTEGRATED)
+    assert speed == pytest.approx(periodic_orbit.relative_bounce_velocity[slow], abs=INTEGRATED)
     assert gap == pytest.approx(-ball.kappa * speed, abs=INTEGRATED)
 
 
 def test_a_table_may_lift_a_ball_higher_in_contact_than_it_flies():
     ball = SpringDamper(1.94317663, damping_ratio=0.60729752)
-    found = orbit(ball, amplitude=0.96596752)
-    assert found.stable and found.admissible
-    assert found.max_height == pytest.approx(0.9157, abs=5e-5)
-    assert found.max_height == pytest.approx(around(found)[1], abs=1e-6)
+    periodic_orbit = orbit(ball, amplitude=0.96596752)
+    assert periodic_orbit.stable and periodic_orbit.admissible
+    assert periodic_orbit.max_height == pytest.approx(0.9157, abs=5e-5)
+    assert periodic_orbit.max_height == pytest.approx(around(periodic_orbit)[1], abs=1e-6)
 
 
 def test_multipliers_are_those_of_the_monodromy_matrix():
-    for each in several_orbits():
-        expected = np.linalg.eigvals(each.monodromy)
+    for periodic_orbit in several_orbits():
+        expected = np.linalg.eigvals(periodic_orbit.monodromy)
         expected = expected[np.argsort(-np.abs(expected))]
-        ours = each.multipliers
+        ours = periodic_orbit.multipliers
         if abs(ours[0].imag) > 0:
             assert np.abs(ours.imag).max() == pytest.approx(np.abs(expected.imag).max(), abs=1e-9)
         assert ours.prod() == pytest.approx(expected.prod(), abs=1e-9)
@@ -176,8 +190,11 @@ def test_multipliers_are_those_of_the_monodromy_matrix():
 
 def test_a_compliant_contact_has_three_orbits():
     """The third one stays on the table for longer than one of its oscillations."""
-    found = orbits(SpringDamper(2.0, restitution=0.85), amplitude=0.9)
-    durations = [(round(each.contact_duration, 4), each.stable) for each in found]
+    periodic_orbits = orbits(SpringDamper(2.0, restitution=0.85), amplitude=0.9)
+    durations = [
+        (round(periodic_orbit.contact_duration, 4), periodic_orbit.stable)
+        for periodic_orbit in periodic_orbits
+    ]
     assert durations == [(1.6018, True), (2.2489, False), (5.1824, True)]
 
 
@@ -207,8 +224,13 @@ def test_the_list_of_orbits_with_one_impact_is_complete(ball, amplitude, n):
     z = z[(z[:, 1:-1] > 0).all(axis=1) & (np.abs(z[:, 0]) < 1e3)]
     z = z[np.unique(z.round(6), axis=0, return_index=True)[1]]
     z = z[equations.admissible(z)]
-    distance = [np.abs(np.exp(1j * z[:, 0]) - np.exp(1j * each.phase)) for each in listed]
-    distance = np.array(distance) + [np.abs(z[:, 1] - each.speeds[0]) for each in listed]
+    distance = [
+        np.abs(np.exp(1j * z[:, 0]) - np.exp(1j * periodic_orbit.phase))
+        for periodic_orbit in listed
+    ]
+    distance = np.array(distance) + [
+        np.abs(z[:, 1] - periodic_orbit.speeds[0]) for periodic_orbit in listed
+    ]
     assert len(z)
     assert distance.min(axis=0).max() < 1e-6
 
@@ -231,19 +253,26 @@ def test_where_a_contact_law_has_no_orbit_the_list_is_empty():
 
 
 def test_orbits_with_several_impacts_are_found_by_their_number():
-    found = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
-    heights = [(round(each.max_height, 3), each.stable) for each in found]
+    periodic_orbits = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
+    heights = [
+        (round(periodic_orbit.max_height, 3), periodic_orbit.stable)
+        for periodic_orbit in periodic_orbits
+    ]
     assert heights == [(8.209, True), (8.007, False)]
 
 
 def test_rows_have_an_orbit_or_a_reason_each():
     """At an amplitude below the saddle-node there is the reason in place of an orbit."""
-    found = orbit(Rigid([0.85, 0.85, 0.5]), amplitude=[0.1, 0.9, 1.3], n=[1, 2, 1])
-    assert isinstance(found[0], OrbitNotFound)
-    for each, r, amplitude, n in ((found[1], 0.85, 0.9, 2), (found[2], 0.5, 1.3, 1)):
+    answers = orbit(Rigid([0.85, 0.85, 0.5]), amplitude=[0.1, 0.9, 1.3], n=[1, 2, 1])
+    assert isinstance(answers[0], OrbitNotFound)
+    for periodic_orbit, r, amplitude, n in ((answers[1], 0.85, 0.9, 2), (answers[2], 0.5, 1.3, 1)):
         alone = orbit(Rigid(r), amplitude=amplitude, n=n)
-        assert np.abs(each.z - alone.z).max() < ROUNDED
-        assert (each.periods, each.amplitude, each.ball.restitution) == (n, amplitude, r)
+        assert np.abs(periodic_orbit.z - alone.z).max() < ROUNDED
+        assert (
+            periodic_orbit.periods,
+            periodic_orbit.amplitude,
+            periodic_orbit.ball.restitution,
+        ) == (n, amplitude, r)
 
 
 def test_a_reason_tells_two_amplitudes_apart():
@@ -288,18 +317,18 @@ def test_the_elimination_by_pairs_solves_the_linear_equations(k, q, p):
     derivatives = random.normal(size=(3, k, q, q + 2 + p))
     right, border = random.normal(size=(3, k, q, 2)), random.normal(size=(3, p, k * q + p))
     border_right = random.normal(size=(3, p, 2))
-    found = solve_bordered(derivatives, right, border, border_right)
+    solution = solve_bordered(derivatives, right, border, border_right)
     matrix = np.concatenate([dense(derivatives).reshape(3, k * q, -1), border], axis=1)
     expected = np.linalg.solve(matrix, np.concatenate([right.reshape(3, -1, 2), border_right], 1))
     size = np.linalg.cond(matrix).max() * np.abs(expected).max()
-    assert np.abs(found - expected).max() < 100 * np.finfo(float).eps * size
+    assert np.abs(solution - expected).max() < 100 * np.finfo(float).eps * size
 
 
 def test_nothing_warns_where_rows_have_no_solution():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = orbit(SpringDamper([0.7, 30.0], restitution=0.5), amplitude=[0.01, 1.4])
-    assert isinstance(found[0], OrbitNotFound) and found[1].stable
+        answers = orbit(SpringDamper([0.7, 30.0], restitution=0.5), amplitude=[0.01, 1.4])
+    assert isinstance(answers[0], OrbitNotFound) and answers[1].stable
 
 
 def test_the_search_with_a_contact_law_soon_finds_that_there_is_no_orbit(monkeypatch):
@@ -318,8 +347,10 @@ def test_the_search_with_a_contact_law_soon_finds_that_there_is_no_orbit(monkeyp
     monkeypatch.setattr(root_time, "solve_panel", counted)
     with pytest.raises(OrbitNotFound, match=r"below the saddle-node at Λ = 0\.253184639"):
         orbit(ball, amplitude=0.1)
-    found = orbits(ball, amplitude=1.2)
-    assert [(each.stable, each.admissible) for each in found] == [(False, True), (False, True)]
+    periodic_orbits = orbits(ball, amplitude=1.2)
+    assert [
+        (periodic_orbit.stable, periodic_orbit.admissible) for periodic_orbit in periodic_orbits
+    ] == [(False, True), (False, True)]
 
 
 def test_a_ball_without_restitution_leaves_where_the_table_falls_faster():
@@ -333,18 +364,18 @@ def test_rows_without_orbits_are_searched_together():
     ratios = [1.5, 5.0, 5.0, 40.0]
     restitution = [0.9, 0.1, 0.6, 0.3]
     together = orbit(SpringDamper(ratios, restitution=restitution), amplitude=[1.6, 1.2, 0.3, 1.2])
-    for row, found in enumerate(together):
+    for row, answer in enumerate(together):
         ball = SpringDamper(ratios[row], restitution=restitution[row])
         try:
             alone = orbit(ball, amplitude=[1.6, 1.2, 0.3, 1.2][row])
         except OrbitNotFound as reason:
-            assert str(found) == str(reason)
+            assert str(answer) == str(reason)
         else:
-            assert np.abs(found.z - alone.z).max() < 1e-11
-    missing = [isinstance(each, OrbitNotFound) for each in together]
+            assert np.abs(answer.z - alone.z).max() < 1e-11
+    missing = [isinstance(answer, OrbitNotFound) for answer in together]
     assert any(missing) and not all(missing)
     rigid = orbit(Rigid([0.1, 0.5, 0.3]), amplitude=1.2)
-    assert [isinstance(each, OrbitNotFound) for each in rigid] == [True, False, True]
+    assert [isinstance(answer, OrbitNotFound) for answer in rigid] == [True, False, True]
 
 
 def test_a_contact_ends_where_its_root_time_repeats_it():
@@ -360,20 +391,24 @@ def test_a_contact_ends_where_its_root_time_repeats_it():
 @pytest.mark.parametrize("beyond", [1e-6, 1e-8])
 def test_orbits_next_to_a_saddle_node_are_listed_once(beyond):
     """Their phases are ±arccos(C/Λ), with C the Λ of the saddle-node, π/3 for r = 1/2."""
-    found = orbits(Rigid(0.5), amplitude=np.pi / 3 * (1 + beyond))
+    periodic_orbits = orbits(Rigid(0.5), amplitude=np.pi / 3 * (1 + beyond))
     phase = np.arccos(1 / (1 + beyond))
     # The phase of a double root loses half of its digits.
-    np.testing.assert_allclose([each.phase for each in found], [phase, -phase], atol=1e-8)
+    np.testing.assert_allclose(
+        [periodic_orbit.phase for periodic_orbit in periodic_orbits], [phase, -phase], atol=1e-8
+    )
 
 
 def test_orbits_on_two_tones_return():
     """All four, by an integrator."""
     table = Table([(2, 0.25, 0.0), (3, 0.09, 0.4)])
-    found = orbits(hunt_crossley(5e3, 0.05), amplitude=2.2, table=table)
-    assert len(found) == 4
-    for each in found:
-        after, _ = around(each)
-        np.testing.assert_allclose(after, [each.times[0], each.speeds[0]], atol=1e-8)
+    periodic_orbits = orbits(hunt_crossley(5e3, 0.05), amplitude=2.2, table=table)
+    assert len(periodic_orbits) == 4
+    for periodic_orbit in periodic_orbits:
+        after, _ = around(periodic_orbit)
+        np.testing.assert_allclose(
+            after, [periodic_orbit.times[0], periodic_orbit.speeds[0]], atol=1e-8
+        )
 
 
 def test_a_search_ends_after_its_evaluations():
@@ -388,7 +423,7 @@ def test_searches_report_their_progress(monkeypatch):
     told = []
     limits(Rigid(0.5), progress=told.append)
     lyapunov(Rigid(0.7), amplitude=1.345, phase=1.0, neighbours=1, progress=told.append)
-    steps = [each.partition(",")[0] for each in told]
+    steps = [line.partition(",")[0] for line in told]
     assert {"limits: the branches of these orbits", "lyapunov: their neighbours"} <= {*steps}
 
 
@@ -406,9 +441,9 @@ def test_a_contact_that_does_not_end_is_named_before_a_search(ball, monkeypatch)
 
 def test_a_search_that_ended_is_an_entry_of_the_list():
     given = {"amplitude": [0.3, 0.9], "evaluations": 1000}
-    ended, found = orbit(Rigid([0.3, 0.9]), **given)
-    assert isinstance(ended, effort.SearchEnded) and found.stable
-    assert follow([ended, found], to=1.5)[0] is ended
+    ended, periodic_orbit = orbit(Rigid([0.3, 0.9]), **given)
+    assert isinstance(ended, effort.SearchEnded) and periodic_orbit.stable
+    assert follow([ended, periodic_orbit], to=1.5)[0] is ended
     with pytest.raises(effort.SearchEnded, match="no answer after 1,000 evaluations"):
         orbit(Rigid(0.3), amplitude=0.3, evaluations=1000)
 
@@ -423,4 +458,4 @@ def test_progress_is_asked_first_and_a_compilation_is_reported(monkeypatch):
     assert told[0].startswith("motion_of: numba compiles")
     monkeypatch.setattr(effort, "EVERY", 0.0)
     basins(hunt_crossley(1000.0, 0.3), amplitude=1.2, starts=4, impacts=25, progress=told.append)
-    assert sum(each.startswith("basins: the balls") for each in told) > 24
+    assert sum(line.startswith("basins: the balls") for line in told) > 24

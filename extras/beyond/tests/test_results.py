@@ -38,7 +38,7 @@ def test_quantities_are_those_of_the_orbits(rigid):
     assert np.array_equal(data.stable.values[ordinary], rigid.stable)
     assert np.array_equal(data.admissible.values[ordinary], rigid.admissible)
     # Special orbits are where the branch passes them.
-    assert data.kind.values[~ordinary].tolist() == [each.kind for each in rigid.special]
+    assert data.kind.values[~ordinary].tolist() == [special.kind for special in rigid.special]
     phase = data.phase.values[:, 0]
     assert np.all(np.diff(phase) > 0) or np.all(np.diff(phase) < 0)
     modulus = np.hypot(data.multiplier_real, data.multiplier_imag)
@@ -101,8 +101,10 @@ def test_lines_are_solid_where_orbits_are_stable(rigid):
     assert len(solid) == 1
     x, y = solid[0].get_data()
     ends = [rigid.first(kind) for kind in ("saddle-node", "period doubling")]
-    assert sorted(x[[0, -1]]) == [each.amplitude for each in ends]
-    assert sorted(y[[0, -1]]) == pytest.approx([each.phase / np.pi for each in ends], abs=1e-12)
+    assert sorted(x[[0, -1]]) == [special.amplitude for special in ends]
+    assert sorted(y[[0, -1]]) == pytest.approx(
+        [special.phase / np.pi for special in ends], abs=1e-12
+    )
     # Between the orbits the line is the closed form Λ cos φ = π/3 to a thousandth of the axis.
     middle = (y[1:] + y[:-1]) / 2
     away = (x[1:] + x[:-1]) / 2 - np.pi / 3 / np.cos(np.pi * middle)
@@ -152,7 +154,7 @@ def test_a_stable_cascade_has_no_unstable_lines():
     figure = plot(branches)
     # The lines of a branch begin at the orbit that doubles its period.
     starts = {line.get_xdata()[0] for line in figure.axes[0].lines if line.get_linestyle() == "-"}
-    assert {each.values[0] for each in branches} <= starts
+    assert {branch.values[0] for branch in branches} <= starts
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
     assert texts == [
         "stable",

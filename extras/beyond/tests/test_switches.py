@@ -66,8 +66,8 @@ def multipliers(case, one):
 
 
 def test_a_stable_range_passes_a_switch():
-    node, doubling = found = limits(law_of(300.0, 2.0, 1.0))
-    assert found.stable_ranges == ((node.amplitude, doubling.amplitude),)
+    node, doubling = orbit_limits = limits(law_of(300.0, 2.0, 1.0))
+    assert orbit_limits.stable_ranges == ((node.amplitude, doubling.amplitude),)
 
 
 @pytest.mark.parametrize("case", CASES)

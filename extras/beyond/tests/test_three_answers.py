@@ -70,9 +70,9 @@ def test_a_contact_bounces_below_the_saddle_node_of_the_restitution_model():
     assert table < line
     touch, _, multipliers = orbit_of(0.65, 1, 100.0, table, 0.04)
     assert np.abs(multipliers).max() < 1
-    found = orbit(SpringDamper(100.0, restitution=0.65), amplitude=table)
-    assert found.phase == pytest.approx(touch[0], abs=1e-9)
-    assert found.stable and found.admissible
+    periodic_orbit = orbit(SpringDamper(100.0, restitution=0.65), amplitude=table)
+    assert periodic_orbit.phase == pytest.approx(touch[0], abs=1e-9)
+    assert periodic_orbit.stable and periodic_orbit.admissible
     # The width of this window is s/C, at any ϖ.
     errors = []
     for ratio in (1e3, 1e4):
@@ -91,8 +91,8 @@ def test_a_height_is_right_where_the_contact_has_doubled():
     _, height, multipliers = orbit_of(r, n, ratio, table, np.arccos(line / table) - 0.03)
     assert height / (lift + (n * np.pi) ** 2 / 2) - 1 == pytest.approx(-0.0079, abs=5e-5)
     assert multipliers.real.min() == pytest.approx(-1.0457, abs=5e-5)
-    found = orbit(SpringDamper(ratio, restitution=r), amplitude=table, n=n)
-    assert found.multipliers.real.min() == pytest.approx(multipliers.real.min(), abs=1e-7)
+    periodic_orbit = orbit(SpringDamper(ratio, restitution=r), amplitude=table, n=n)
+    assert periodic_orbit.multipliers.real.min() == pytest.approx(multipliers.real.min(), abs=1e-7)
 
 
 def test_the_law_of_the_stability_is_right_to_second_order():

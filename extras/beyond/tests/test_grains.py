@@ -74,14 +74,14 @@ def off_by(stiffness):
         return [*state[2:], *(push * state[:2] / distance)]
 
     exact = {"max_step": 1e-3, "rtol": 1e-11, "atol": 1e-13}
-    found = solve_ivp(motion, (0.0, 1.0), [*start, *velocity], **exact)
+    solution = solve_ivp(motion, (0.0, 1.0), [*start, *velocity], **exact)
     d = 1.0 - 0.8 * math.pi / 2 / math.sqrt(stiffness)
     # The continued flight has the distance d at t.
     t = 0.8 - math.sqrt(0.8**2 - (1.0 - d**2))
     place = start + t * velocity
     reflected = velocity - 2 * (velocity @ place) / d**2 * place
     hard = [*(place + (1.0 - t) * reflected), *reflected]
-    return np.linalg.norm(found.y[:, -1] - hard)
+    return np.linalg.norm(solution.y[:, -1] - hard)
 
 
 def test_an_oblique_collision_is_that_of_smaller_hard_spheres():

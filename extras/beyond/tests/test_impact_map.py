@@ -31,17 +31,17 @@ BALLS = {
 def case(request):
     """A map, and points on each piece of it, with more at speeds above and below."""
     ball, table = BALLS[request.param]
-    found = impact_map(ball, 1.2, table, 8.0)
+    contact_map = impact_map(ball, 1.2, table, 8.0)
     rng = np.random.default_rng(5)
-    octave = rng.uniform(-0.5, len(found.pieces) + 0.5, 200)
-    return found, rng.uniform(-np.pi, np.pi, 200), 8.0 * 2**-octave
+    octave = rng.uniform(-0.5, len(contact_map.pieces) + 0.5, 200)
+    return contact_map, rng.uniform(-np.pi, np.pi, 200), 8.0 * 2**-octave
 
 
 def test_contacts_are_those_of_the_integration(case):
-    found, tau, u = case
-    assert len(found.pieces) >= 3
-    scaled_duration, duration, gap, speed = np.array(found.leaves(tau, u))
-    expected = found.ball.leaves(tau, u, 1.2, found.table)
+    contact_map, tau, u = case
+    assert len(contact_map.pieces) >= 3
+    scaled_duration, duration, gap, speed = np.array(contact_map.leaves(tau, u))
+    expected = contact_map.ball.leaves(tau, u, 1.2, contact_map.table)
     # Rounding of integrations, which is some hundred times that of numbers.
     assert np.allclose(scaled_duration, expected[0], rtol=2e-13)
     assert np.allclose(duration, expected[1], rtol=2e-13)
@@ -50,14 +50,14 @@ def test_contacts_are_those_of_the_integration(case):
 
 
 def test_slopes_are_those_of_the_integration(case):
-    found, tau, u = case
-    T, *_ = found.leaves(tau, u)
-    slopes = found.end_slopes(tau, u, T)
-    expected = found.ball.end_slopes(tau, u, T, 1.2, found.table)
+    contact_map, tau, u = case
+    T, *_ = contact_map.leaves(tau, u)
+    slopes = contact_map.end_slopes(tau, u, T)
+    expected = contact_map.ball.end_slopes(tau, u, T, 1.2, contact_map.table)
     # Differentiation of a polynomial of degree n multiplies rounding by up to n².
     allowed = 15**2 * 1e-13 * np.maximum(np.abs(expected).max(axis=2, keepdims=True), 1.0)
     assert np.all(np.abs(slopes - expected) <= allowed)
-    assert u.min() < found.top / 2 ** len(found.pieces)
+    assert u.min() < contact_map.top / 2 ** len(contact_map.pieces)
 
 
 def test_slow_impacts_and_soft_contacts_are_integrated():
@@ -84,6 +84,6 @@ def test_when_a_map_saves_time():
     several = bb.tsuji(stiffness=np.full(100, 1e4), damping=np.full(100, 0.1))
     one = BALLS["Tsuji"][0]
     rows = [Balls(ball, tau + 1.2, tau, tau, tau + 1.0) for ball in (spring, several, one)]
-    assert [long_term.is_worth_a_map(each, 2000, 0) for each in rows] == [False, False, True]
+    assert [long_term.is_worth_a_map(row, 2000, 0) for row in rows] == [False, False, True]
     assert not long_term.is_worth_a_map(Balls(one, tau + np.arange(100), tau, tau, tau), 2000, 0)
     assert [long_term.is_worth_a_map(rows[-1], 100, seen) for seen in (0, 100)] == [False, True]

@@ -17,12 +17,12 @@ def own_motion(ball, amplitude, contacts):
 
     Returns times, speeds, the flights before them, and the times and speeds of the releases.
     """
-    tau, u, found = 0.0, 0.0, []
+    tau, u, impacts = 0.0, 0.0, []
     for _ in range(contacts):
         leaves, gap, speed, _ = integrated.touching(ball, amplitude, tau, u)
         tau, u, _ = integrated.flight(amplitude, leaves, gap, speed)
-        found.append((tau, u, tau - leaves, leaves, speed))
-    return np.array(found).T
+        impacts.append((tau, u, tau - leaves, leaves, speed))
+    return np.array(impacts).T
 
 
 def own_hop(amplitude, leaves, speed, flight):
@@ -38,16 +38,16 @@ def own_hop(amplitude, leaves, speed, flight):
     [(0.65, 10.0, 1.0, 1), (0.65, 10.0, 1.15, 2), (0.65, 40.0, 1.1, 4), (0.85, 20.0, 1.06, 3)],
 )
 def test_both_laid_balls_end_on_the_motion_of_an_integrator(r, ratio, amplitude, impacts):
-    found = laid_balls.on_contacts(r, np.array([amplitude]), np.array([ratio]), 400)
-    assert (found["impacts"].item(), found["periods"].item()) == (impacts, 1)
-    assert not found["start_decides"].item()
+    motion = laid_balls.on_contacts(r, np.array([amplitude]), np.array([ratio]), 400)
+    assert (motion["impacts"].item(), motion["periods"].item()) == (impacts, 1)
+    assert not motion["start_decides"].item()
     ball = SpringDamper(ratio, restitution=r)
     tau, u, flight, leaves, speed = own_motion(ball, amplitude, 20 * impacts)
     assert tau[-1] - tau[-1 - impacts] == pytest.approx(PERIOD, abs=1e-6)
     assert all(abs(np.diff(tau[-1 - impacts :])[:-1] - PERIOD) > 1e-2)
     last = flight[-impacts:].argmax() - impacts
     hop = own_hop(amplitude, leaves[last], speed[last], flight[last])
-    assert found["hop"].item() == pytest.approx(hop, rel=1e-5)
+    assert motion["hop"].item() == pytest.approx(hop, rel=1e-5)
     if (ratio, amplitude) == (10.0, 1.0):
         assert u[-1] == pytest.approx(0.0051093, abs=5e-8)
 
@@ -68,8 +68,8 @@ def test_a_ball_leaves_the_steady_motion_where_an_integrated_one_does(ratio, amp
 
     surface.direction = 1
     options = {"method": "DOP853", "events": surface, "rtol": 1e-11, "atol": 1e-14}
-    found = solve_ivp(motion, (0, settling + PERIOD), [0, 0], max_step=0.02, **options)
-    leaves, (_, speed) = found.t_events[0][-1], found.y_events[0][-1]
+    solution = solve_ivp(motion, (0, settling + PERIOD), [0, 0], max_step=0.02, **options)
+    leaves, (_, speed) = solution.t_events[0][-1], solution.y_events[0][-1]
     tau, u, _ = integrated.flight(amplitude, leaves, 0.0, speed)
     turned = (tau - balls.phase.item() + np.pi) % PERIOD - np.pi
     assert turned == pytest.approx(0, abs=1e-6)
@@ -78,8 +78,8 @@ def test_a_ball_leaves_the_steady_motion_where_an_integrated_one_does(ratio, amp
 
 @pytest.mark.parametrize("r, amplitude", [(0.65, 1.2), (0.85, 1.1), (0.65, 1.38)])
 def test_a_rigid_ball_chatters_and_sticks_before_it_leaves_again(r, amplitude):
-    found = laid_balls.in_groups(laid_balls.put_down(Rigid(r), np.array([amplitude])), 400)
-    assert found["periods"].item() == 1
+    motion = laid_balls.in_groups(laid_balls.put_down(Rigid(r), np.array([amplitude])), 400)
+    assert motion["periods"].item() == 1
     leaves = tau = np.arcsin(1 / amplitude)
     speed, first = 0.0, None
     for _ in range(400):
@@ -93,7 +93,7 @@ def test_a_rigid_ball_chatters_and_sticks_before_it_leaves_again(r, amplitude):
     # The bounces that are left last for `rest`, as a geometric series.
     assert tau + 2 * rest < leaves + PERIOD
     assert 1 - amplitude * np.sin(tau + rest) > 0
-    assert found["hop"].item() == pytest.approx(first, rel=1e-6)
+    assert motion["hop"].item() == pytest.approx(first, rel=1e-6)
 
 
 def test_balls_rest_up_to_the_threshold():

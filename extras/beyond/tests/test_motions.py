@@ -11,11 +11,11 @@ from bouncing_ball_beyond.tables.table import PERIOD
 
 def test_the_kinds_of_motions():
     ball = bb.Rigid(0.5)
-    found = bb.motion_of(ball, amplitude=[0.5, 1.2, 1.6, 2.5])
-    assert found.kind.values.tolist() == ["permanent contact", "periodic", "periodic", "locked"]
-    assert found.impacts.values[:3].tolist() == [0, 1, 2]
-    assert found.periods.values[:3].tolist() == [1, 1, 2]
-    assert (found.reason == "").all()
+    motions = bb.motion_of(ball, amplitude=[0.5, 1.2, 1.6, 2.5])
+    assert motions.kind.values.tolist() == ["permanent contact", "periodic", "periodic", "locked"]
+    assert motions.impacts.values[:3].tolist() == [0, 1, 2]
+    assert motions.periods.values[:3].tolist() == [1, 1, 2]
+    assert (motions.reason == "").all()
 
 
 @pytest.mark.parametrize(
@@ -30,31 +30,31 @@ def test_the_kinds_of_motions():
 def test_a_motion_without_further_arguments_is_that_of_two_thousand_impacts(call, given):
     """A chaotic ball is followed to the last of them, so that one more would be seen."""
     chaotic = {"amplitude": [2.3] if call is bb.orbit_diagram else 2.3}
-    counts = {name: each for name, each in given.items() if name in ("starts", "samples")}
-    found = call(bb.Rigid(0.85), **chaotic, **counts)
-    assert found.identical(call(bb.Rigid(0.85), **chaotic, **given, impacts=2000))
+    counts = {name: count for name, count in given.items() if name in ("starts", "samples")}
+    motions = call(bb.Rigid(0.85), **chaotic, **counts)
+    assert motions.identical(call(bb.Rigid(0.85), **chaotic, **given, impacts=2000))
 
 
 def test_two_impacts_in_two_periods_between_the_first_two_doublings():
     """At ϖ = 20 and r = 0.65 the 1-T orbit doubles its period at 1.23 and loses it before 1.35."""
     ball = bb.SpringDamper(20.0, restitution=0.65)
-    found = bb.motion_of(ball, amplitude=1.25)
-    assert (found.kind, found.impacts, found.periods) == ("periodic", 2, 2)
+    motion = bb.motion_of(ball, amplitude=1.25)
+    assert (motion.kind, motion.impacts, motion.periods) == ("periodic", 2, 2)
     assert bb.motion_of(ball, amplitude=1.2, phase=0.8).impacts == 1
     (orbit,) = (
-        each for each in bb.orbits(ball, impacts=2, periods=2, amplitude=1.25) if each.stable
+        orbit for orbit in bb.orbits(ball, impacts=2, periods=2, amplitude=1.25) if orbit.stable
     )
     exponent = np.log(np.abs(orbit.multipliers).max()) / 2
-    assert abs(found.lyapunov_exponent - exponent) < 1e-6
-    end = np.abs(np.angle(np.exp(1j * (orbit.phase - float(found.end_phase)))))
+    assert abs(motion.lyapunov_exponent - exponent) < 1e-6
+    end = np.abs(np.angle(np.exp(1j * (orbit.phase - float(motion.end_phase)))))
     assert end.min() < 1e-6
 
 
 def test_the_exponent_of_chaos_is_that_of_neighbours_that_separate():
     """The growth of a distance of 10⁻⁹ over 12 impacts, averaged over a chaotic motion."""
     ball = bb.SpringDamper(20.0, restitution=0.85)
-    found = bb.motion_of(ball, amplitude=2.0, impacts=20_000)
-    assert found.kind == "chaotic"
+    motion = bb.motion_of(ball, amplitude=2.0, impacts=20_000)
+    assert motion.kind == "chaotic"
     _, balls = simulation.first_impacts(ball, 2.0, 0.0, -3.0, None)
     record, _, _ = bounces.bounce(balls, 20_000)
     tau, u = record[1000::4, 1, 0], record[1000::4, 2, 0]
@@ -72,7 +72,7 @@ def test_the_exponent_of_chaos_is_that_of_neighbours_that_separate():
         )
     # The direction of a deviation settles in the first impacts.
     growth, time = np.diff(rates, axis=0)[0]
-    assert abs(PERIOD * growth / time / found.lyapunov_exponent - 1) < 0.05
+    assert abs(PERIOD * growth / time / motion.lyapunov_exponent - 1) < 0.05
 
 
 def test_the_error_of_an_exponent_covers_its_scatter():
@@ -147,13 +147,13 @@ def test_products_of_maps():
 def test_a_locked_ball_repeats_from_lift_off_to_lift_off():
     """Followed on, the ball sticks again after as many impacts and periods as were found."""
     ball = bb.Rigid(0.6)
-    found = bb.motion_of(ball, amplitude=3.0)
-    assert (found.kind, found.lyapunov_exponent) == ("locked", -np.inf)
-    impacts = bb.simulate(ball, amplitude=3.0, impacts=int(found.followed) + 200)
+    motion = bb.motion_of(ball, amplitude=3.0)
+    assert (motion.kind, motion.lyapunov_exponent) == ("locked", -np.inf)
+    impacts = bb.simulate(ball, amplitude=3.0, impacts=int(motion.followed) + 200)
     (rests,) = (impacts.contact_duration.values > 0).nonzero()
-    assert np.diff(rests)[1:].tolist() == [int(found.impacts)] * (rests.size - 2)
+    assert np.diff(rests)[1:].tolist() == [int(motion.impacts)] * (rests.size - 2)
     time = (impacts.time + impacts.contact_duration).values[rests]
-    assert np.abs(np.diff(time)[1:] - PERIOD * int(found.periods)).max() < 1e-9
+    assert np.abs(np.diff(time)[1:] - PERIOD * int(motion.periods)).max() < 1e-9
 
 
 def test_a_compliant_contact_that_lasts_longer_than_two_free_ones_is_locked():
@@ -162,16 +162,16 @@ def test_a_compliant_contact_that_lasts_longer_than_two_free_ones_is_locked():
         bb.orbits(ball, impacts=1, periods=1, amplitude=0.9), key=lambda o: o.contact_duration
     )
     start = {"phase": last.phase, "velocity": last.impact_velocity}
-    found = bb.motion_of(ball, amplitude=0.9, **start)
-    assert (found.kind, found.periods, found.impacts) == ("locked", 1, 1)
+    motion = bb.motion_of(ball, amplitude=0.9, **start)
+    assert (motion.kind, motion.periods, motion.impacts) == ("locked", 1, 1)
 
 
 def test_a_contact_that_no_free_impact_leaves_does_not_stick():
     ball = bb.SpringDamper(20.0, damping_ratio=1.2)
     one = bb.orbit(ball, amplitude=3.5)
     assert one.stable and one.admissible and one.contact_duration < 0.5
-    found = bb.motion_of(ball, amplitude=3.5, phase=one.phase, velocity=one.impact_velocity)
-    assert (found.kind, found.periods, found.impacts) == ("periodic", 1, 1)
+    motion = bb.motion_of(ball, amplitude=3.5, phase=one.phase, velocity=one.impact_velocity)
+    assert (motion.kind, motion.periods, motion.impacts) == ("periodic", 1, 1)
 
 
 def test_balls_with_a_contact_and_with_instants_lock_after_other_periods():
@@ -197,16 +197,16 @@ def test_what_is_not_known_has_a_reason():
 
 def test_a_neighbour_that_rests_once_shows_a_transient():
     """A ball with r = 0.9 rests about once in three thousand impacts, and then repeats itself."""
-    found = bb.lyapunov(bb.Rigid(0.9), amplitude=1.25, phase=1.0)
-    assert found.kind in ("undecided", "locked")
+    motion = bb.lyapunov(bb.Rigid(0.9), amplitude=1.25, phase=1.0)
+    assert motion.kind in ("undecided", "locked")
 
 
 def test_chaos_that_ends_is_a_transient():
     """A ball that sticks once in some thousand impacts looks chaotic in two thousand."""
-    found = bb.lyapunov(bb.Rigid(0.7), amplitude=1.85, phase=1.0, impacts=400)
-    if found.kind == "undecided":
-        assert found.reason == long_term.TRANSIENT
-        assert np.isnan(found.lyapunov_exponent)
+    motion = bb.lyapunov(bb.Rigid(0.7), amplitude=1.85, phase=1.0, impacts=400)
+    if motion.kind == "undecided":
+        assert motion.reason == long_term.TRANSIENT
+        assert np.isnan(motion.lyapunov_exponent)
     above = bb.lyapunov(bb.Rigid(0.7), amplitude=1.345, phase=1.0)
     assert above.kind == "chaotic"
     assert 0.13 < above.lyapunov_exponent < 0.16
@@ -216,29 +216,29 @@ def test_chaos_that_ends_is_a_transient():
 def test_exponents_without_neighbours_are_those_of_the_ball_alone():
     """Then a transient is not told from chaos, and nothing else changes."""
     given = {"amplitude": [1.2, 1.85], "phase": 1.0, "impacts": 400}
-    found = bb.lyapunov(bb.Rigid(0.7), neighbours=0, **given)
-    assert found.identical(bb.motion_of(bb.Rigid(0.7), **given))
-    assert found.kind[1] == "chaotic" and np.isfinite(found.lyapunov_exponent[1])
+    motions = bb.lyapunov(bb.Rigid(0.7), neighbours=0, **given)
+    assert motions.identical(bb.motion_of(bb.Rigid(0.7), **given))
+    assert motions.kind[1] == "chaotic" and np.isfinite(motions.lyapunov_exponent[1])
     with pytest.raises(ValueError, match=r"neighbours = -1: must be a whole number from 0"):
         bb.lyapunov(bb.Rigid(0.7), neighbours=-1, **given)
 
 
 @pytest.mark.parametrize("ball", [bb.Rigid(0.65), bb.SpringDamper(10.0, restitution=0.65)])
 def test_basins_are_the_motions_of_balls_one_by_one(ball):
-    found = bb.basins(ball, amplitude=1.1, starts=7)
-    assert abs(float(found.share.sum()) - 1) < 1e-12
+    basins = bb.basins(ball, amplitude=1.1, starts=7)
+    assert abs(float(basins.share.sum()) - 1) < 1e-12
     # Each start is in the middle of a cell, and all cells are of the same size.
     middle = (np.arange(7) + 0.5) / 7
-    assert np.allclose(found.phase, 2 * np.pi * middle - np.pi, rtol=1e-14)
-    assert np.allclose(found.speed, middle * 1.1 * 1.65 / 0.35, rtol=1e-14)
+    assert np.allclose(basins.phase, 2 * np.pi * middle - np.pi, rtol=1e-14)
+    assert np.allclose(basins.speed, middle * 1.1 * 1.65 / 0.35, rtol=1e-14)
     for i in range(7):
         for j in range(0, 7, 3):
-            u, tau = float(found.speed[i]), float(found.phase[j])
+            u, tau = float(basins.speed[i]), float(basins.phase[j])
             alone = bb.motion_of(ball, amplitude=1.1, phase=tau, relative_velocity=-u)
-            motion = found.isel(motion=int(found.destination[i, j]))
+            motion = basins.isel(motion=int(basins.destination[i, j]))
             assert (motion.kind, motion.impacts) == (alone.kind, alone.impacts)
-    counts = np.bincount(found.destination.values.ravel()) / 49
-    assert np.allclose(counts, found.share)
+    counts = np.bincount(basins.destination.values.ravel()) / 49
+    assert np.allclose(counts, basins.share)
 
 
 def test_two_orbits_with_as_many_impacts_and_periods_are_two_motions():
@@ -249,43 +249,43 @@ def test_two_orbits_with_as_many_impacts_and_periods_are_two_motions():
     """
     ball = bb.Rigid(0.6)
     table = bb.Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
-    found = bb.basins(ball, amplitude=1.555, starts=8, table=table)
-    periodic = np.flatnonzero(found.kind == "periodic")
-    settled = np.isin(found.destination, periodic)
+    basins = bb.basins(ball, amplitude=1.555, starts=8, table=table)
+    periodic = np.flatnonzero(basins.kind == "periodic")
+    settled = np.isin(basins.destination, periodic)
     assert len(periodic) == 2 and settled.mean() > 0.5
     orbits = bb.orbits(ball, impacts=2, periods=2, amplitude=1.555, table=table)
-    stable = sorted((each for each in orbits if each.stable), key=lambda each: min(each.phase))
-    fastest = [np.argmin(each.relative_impact_velocity) for each in stable]
-    for i, each, k in zip(range(2), stable, fastest, strict=True):
-        motion = found.isel(motion=periodic[i])
-        assert abs(motion.end_phase - each.phase[k]) < 1e-6
-        assert abs(motion.end_velocity - each.impact_velocity[k]) < 1e-6
+    stable = sorted((orbit for orbit in orbits if orbit.stable), key=lambda orbit: min(orbit.phase))
+    fastest = [np.argmin(orbit.relative_impact_velocity) for orbit in stable]
+    for i, orbit, k in zip(range(2), stable, fastest, strict=True):
+        motion = basins.isel(motion=periodic[i])
+        assert abs(motion.end_phase - orbit.phase[k]) < 1e-6
+        assert abs(motion.end_velocity - orbit.impact_velocity[k]) < 1e-6
     states = bb.motion_of(
-        ball, amplitude=1.555, phase=found.phase, relative_velocity=-found.speed, table=table
-    ).transpose(*found.destination.dims)
+        ball, amplitude=1.555, phase=basins.phase, relative_velocity=-basins.speed, table=table
+    ).transpose(*basins.destination.dims)
     ends = states.end_phase.values
-    away = [np.min([np.abs(ends - p) for p in each.phase], axis=0) for each in stable]
+    away = [np.min([np.abs(ends - p) for p in orbit.phase], axis=0) for orbit in stable]
     assert np.array_equal(
-        found.destination.values[settled], periodic[np.argmin(away, axis=0)][settled]
+        basins.destination.values[settled], periodic[np.argmin(away, axis=0)][settled]
     )
     assert np.min(away, axis=0)[settled].max() < 1e-6
-    assert np.allclose(found.share, np.bincount(found.destination.values.ravel()) / 64)
+    assert np.allclose(basins.share, np.bincount(basins.destination.values.ravel()) / 64)
 
 
 def test_no_ball_leaves_the_speeds_of_a_basin():
     """Above the fastest speed of :func:`fastest` every impact slows a ball."""
     fast = long_term.fastest(bb.Rigid(0.5), 2.0)
     assert fast == 6.0
-    found = bb.simulate(bb.Rigid(0.5), amplitude=2.0, velocity=-5.0, phase=0.1, impacts=2000)
-    assert found.bounce_velocity.max() < fast
+    impacts = bb.simulate(bb.Rigid(0.5), amplitude=2.0, velocity=-5.0, phase=0.1, impacts=2000)
+    assert impacts.bounce_velocity.max() < fast
 
 
 def test_an_orbit_diagram_doubles_where_the_orbit_does():
     ball = bb.Rigid(0.5)
     doubling = 1.526824
-    found = bb.orbit_diagram(ball, amplitude=doubling + np.array([-0.05, 0.05]), impacts=1000)
-    assert found.impact_phase.dims == ("amplitude", "start", "impact")
-    one, two = (found.isel(amplitude=i) for i in (0, 1))
+    diagram = bb.orbit_diagram(ball, amplitude=doubling + np.array([-0.05, 0.05]), impacts=1000)
+    assert diagram.impact_phase.dims == ("amplitude", "start", "impact")
+    one, two = (diagram.isel(amplitude=i) for i in (0, 1))
     orbit = bb.orbit(ball, amplitude=doubling - 0.05)
     on_orbit = (one.impacts == 1) & (one.periods == 1)
     assert on_orbit.any()
@@ -319,8 +319,10 @@ def test_a_summary_of_many_impacts_needs_no_history():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(long_term, "bounce", watched)
-        found = bb.motion_of(bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=60_000)
-    assert found.followed >= 60_000
+        motion = bb.motion_of(
+            bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=60_000
+        )
+    assert motion.followed >= 60_000
     assert max(most) <= long_term.IMPACTS_AT_ONCE
 
 
@@ -338,7 +340,7 @@ def test_a_slowly_converging_speed_repeats_only_near_its_fixed_point(distance, r
     after = bounces.Balls(bb.Rigid(0.5), 0 * one, impacts * one, one, speed[-1:])
     maps = np.zeros((2, 2, impacts, 1))
     maps[0, 0], maps[1, 1] = 0.5, 0.99
-    found = long_term.recurrence(balls, record, after, maps)
-    assert found["repeats"][0] == repeats
-    assert found["impacts"][0] == found["periods"][0] == 1
-    assert found["radius"][0] == pytest.approx(0.99)
+    recurrence = long_term.recurrence(balls, record, after, maps)
+    assert recurrence["repeats"][0] == repeats
+    assert recurrence["impacts"][0] == recurrence["periods"][0] == 1
+    assert recurrence["radius"][0] == pytest.approx(0.99)

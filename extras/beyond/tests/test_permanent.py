@@ -84,11 +84,11 @@ def weakest(law, solution):
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_an_integrated_contact_loses_its_grip_at_the_threshold(law, wave):
     """The motion is followed from rest, and then until its grip only just vanishes."""
-    found = permanent_contact(law, table=TABLES[wave])
+    threshold = permanent_contact(law, table=TABLES[wave])
     harmonics = WAVES[wave]
     start = [fsolve(lambda p: law.force(p, 0.0, **law.values) - 1, 0.05)[0], 0.0]
     for share in (0.3, 0.6, 0.8, 0.9, 0.99):
-        amplitude = share * found
+        amplitude = share * threshold
 
         def after(y, amplitude=amplitude):
             return follow(law, amplitude, harmonics, y).y[:, -1] - y
@@ -109,7 +109,7 @@ def test_an_integrated_contact_loses_its_grip_at_the_threshold(law, wave):
         return [*(end - [p, v]), sum(beside) / 2, (beside[1] - beside[0]) / (2 * step)]
 
     *_, own = fsolve(touching, [p, v, phase, amplitude], xtol=1e-11)
-    assert found == pytest.approx(own, rel=1e-7)
+    assert threshold == pytest.approx(own, rel=1e-7)
 
 
 def test_a_contact_that_has_no_threshold_is_refused():

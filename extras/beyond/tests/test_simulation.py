@@ -57,10 +57,10 @@ def contact(amplitude, tau, u, acceleration, kappa=0.0):
     release.terminal = True
     release.direction = 1
     start = [kappa * min(u, 0.0), -u]
-    found = solve_ivp(
+    solution = solve_ivp(
         motion, (tau, tau + 30), start, "DOP853", events=release, rtol=1e-12, atol=1e-14
     )
-    return found.t_events[0][0], found.y_events[0][0][1]
+    return solution.t_events[0][0], solution.y_events[0][0][1]
 
 
 def oscillator(ball):
@@ -96,30 +96,34 @@ BALLS = {
 def test_regular_motions_are_those_of_an_integrator_over_many_impacts(name):
     ball = BALLS[name]
     impacts = 1000
-    found = bb.simulate(ball, amplitude=1.2, phase=0.5, velocity=-3.0, impacts=impacts)
+    simulated_impacts = bb.simulate(ball, amplitude=1.2, phase=0.5, velocity=-3.0, impacts=impacts)
     tau, u = reference(ball, 1.2, 0.5, 3.0 + 1.2 * np.cos(0.5), impacts)
-    assert np.abs(found.time - (tau - 0.5)).max() < 1e-9
-    assert np.abs(found.relative_impact_velocity + u).max() < 1e-10
+    assert np.abs(simulated_impacts.time - (tau - 0.5)).max() < 1e-9
+    assert np.abs(simulated_impacts.relative_impact_velocity + u).max() < 1e-10
 
 
 @pytest.mark.parametrize("ball", [*BALLS.values(), bb.SpringDamper(3.0, restitution=0.9)])
 def test_chaotic_motions_are_those_of_an_integrator_as_long_as_digits_last(ball):
     """They part from it no faster than from a ball that starts with a speed changed by 10⁻¹¹."""
     start = {"amplitude": 3.0, "phase": 0.5, "impacts": 14}
-    found, beside = (bb.simulate(ball, velocity=-3.0 + d, **start).time for d in (0.0, 1e-11))
+    times, beside = (bb.simulate(ball, velocity=-3.0 + d, **start).time for d in (0.0, 1e-11))
     tau, _ = reference(ball, 3.0, 0.5, 3.0 + 3.0 * np.cos(0.5), 14)
-    parted = np.maximum.accumulate(np.abs(found - beside).values)
+    parted = np.maximum.accumulate(np.abs(times - beside).values)
     assert parted[-1] > 1e-9
-    assert (np.abs(found.values - (tau - 0.5)) < 1e-10 + 10 * parted).all()
+    assert (np.abs(times.values - (tau - 0.5)) < 1e-10 + 10 * parted).all()
 
 
 def test_both_lines_of_the_restitution_map():
     """Λ(sin τ₁ - sin τ₀) = s v₀ - s²/2 and v₁ = -r(v₀ - s) + (1 + r)Λ cos τ₁ (Eq. 5)."""
     r, amplitude = 0.85, 2.5
-    found = bb.simulate(bb.Rigid(r), amplitude=amplitude, impacts=300)
-    tau, v, s = found.impact_phase.values, found.bounce_velocity.values, found.flight_time.values
+    impacts = bb.simulate(bb.Rigid(r), amplitude=amplitude, impacts=300)
+    tau, v, s = (
+        impacts.impact_phase.values,
+        impacts.bounce_velocity.values,
+        impacts.flight_time.values,
+    )
     # The motion is chaotic: rounding decides whether the ball also rests on the table.
-    instant = found.contact_duration.values == 0
+    instant = impacts.contact_duration.values == 0
     assert instant.sum() > 200
     height = amplitude * (np.sin(tau[1:]) - np.sin(tau[:-1]))
     wrong = height - (s * v - s**2 / 2)[:-1]
@@ -127,7 +131,7 @@ def test_both_lines_of_the_restitution_map():
     after = -r * (v - s)[:-1] + (1 + r) * amplitude * np.cos(tau[1:])
     wrong = v[1:] - after
     assert np.abs(wrong[instant[:-1] & instant[1:]]).max() < 1e-13
-    tau, v, s = (each[instant, np.newaxis] for each in (tau, v, s))
+    tau, v, s = (quantity[instant, np.newaxis] for quantity in (tau, v, s))
     part = np.linspace(1e-3, 1 - 1e-3, 500) * s
     ball = amplitude * np.sin(tau) + v * part - part**2 / 2
     assert (ball > amplitude * np.sin(tau + part)).all()
@@ -138,20 +142,20 @@ def test_a_history_from_a_late_phase_lasts_to_its_end():
     longer = bb.history(bb.Rigid(0.5), **start, periods=50)
     # Impacts are computed 32 at once.
     for periods in range(28, 40):
-        found = bb.history(bb.Rigid(0.5), **start, periods=periods)
-        np.testing.assert_allclose(found.ball, longer.ball[: found.time.size], atol=1e-9)
+        history = bb.history(bb.Rigid(0.5), **start, periods=periods)
+        np.testing.assert_allclose(history.ball, longer.ball[: history.time.size], atol=1e-9)
 
 
 @pytest.mark.parametrize("r", [0.0, 0.5, 0.9, 0.99])
 def test_a_ball_on_a_fixed_table_rests_when_its_bounces_end(r):
     """Bounce k lasts 2 u rᵏ, and all together 2 u r/(1 - r)."""
-    found = bb.simulate(bb.Rigid(r), amplitude=0.0, velocity=-4.0, impacts=3000)
-    number = int(found.time.notnull().sum())
-    assert found.status == "permanent contact"
-    assert np.isinf(found.contact_duration[number - 1])
+    impacts = bb.simulate(bb.Rigid(r), amplitude=0.0, velocity=-4.0, impacts=3000)
+    number = int(impacts.time.notnull().sum())
+    assert impacts.status == "permanent contact"
+    assert np.isinf(impacts.contact_duration[number - 1])
     times = 8 * r * (1 - r ** np.arange(number)) / (1 - r)
-    assert np.abs(found.time[:number] - times).max() < 1e-12
-    assert abs(found.time[number - 1] - 8 * r / (1 - r)) < 2e-5 / (1 - r)
+    assert np.abs(impacts.time[:number] - times).max() < 1e-12
+    assert abs(impacts.time[number - 1] - 8 * r / (1 - r)) < 2e-5 / (1 - r)
 
 
 def test_bounces_that_end_are_summed_up_as_if_they_were_followed():
@@ -174,14 +178,14 @@ def test_a_ball_that_rests_leaves_where_the_table_falls_faster_than_it():
     amplitude = 2.0
     lift_off = np.arcsin(1 / amplitude)
     ball = bb.Rigid(0.4)
-    found = bb.simulate(ball, amplitude=amplitude, phase=3.0, relative_velocity=-0.1, impacts=60)
-    rests = int(np.argmax(found.contact_duration.values > 0))
-    leaves = (found.impact_phase + found.contact_duration)[rests] % PERIOD
+    impacts = bb.simulate(ball, amplitude=amplitude, phase=3.0, relative_velocity=-0.1, impacts=60)
+    rests = int(np.argmax(impacts.contact_duration.values > 0))
+    leaves = (impacts.impact_phase + impacts.contact_duration)[rests] % PERIOD
     assert abs(leaves - lift_off) < 1e-13
-    assert found.relative_bounce_velocity[rests] == 0
+    assert impacts.relative_bounce_velocity[rests] == 0
     lands, u = flight(amplitude, lift_off, 0.0, 0.0)
-    assert abs(found.flight_time[rests] - (lands - lift_off)) < 1e-12
-    assert abs(found.relative_impact_velocity[rests + 1] + u) < 1e-12
+    assert abs(impacts.flight_time[rests] - (lands - lift_off)) < 1e-12
+    assert abs(impacts.relative_impact_velocity[rests + 1] + u) < 1e-12
 
 
 @pytest.mark.parametrize("speed", [1e-5, 1e-7, 1e-9, 1e-13])
@@ -190,13 +194,13 @@ def test_a_ball_that_leaves_slowly_lands_and_rests(speed, many):
     """The first flight lasts 2w/(1 - Λ sin τ), but for changes of this gravity."""
     phase = xr.DataArray(np.full(many, 0.3), dims="ball")
     start = {"amplitude": 0.5, "phase": phase, "relative_velocity": -speed}
-    found = bb.simulate(bb.Rigid(0.8), **start, impacts=60)
-    assert (found.status == "permanent contact").all()
-    assert (found.time.max("impact") < 20 * speed).all()
+    impacts = bb.simulate(bb.Rigid(0.8), **start, impacts=60)
+    assert (impacts.status == "permanent contact").all()
+    assert (impacts.time.max("impact") < 20 * speed).all()
     assert bb.motion_of(bb.Rigid(0.8), **start).kind[0] == "permanent contact"
     if speed == 1e-5:
         flown = 2 * 0.8 * speed / (1 - 0.5 * np.sin(0.3))
-        assert abs(found.flight_time[0, 0] / flown - 1) < 1e-4
+        assert abs(impacts.flight_time[0, 0] / flown - 1) < 1e-4
 
 
 # Without a speed a ball leaves only where the table falls away, Λ sin τ ≥ 1.
@@ -250,11 +254,11 @@ def test_a_flight_that_nearly_touches_the_table_goes_on():
 @pytest.mark.parametrize("ratio", [1.0, 2.0, 30.0])
 def test_an_undamped_contact_on_a_fixed_table_keeps_the_energy(ratio):
     ball = bb.SpringDamper(ratio, damping_ratio=0.0)
-    found = bb.simulate(ball, amplitude=0.0, velocity=-2.0, impacts=60)
-    assert np.abs(found.bounce_velocity - 2).max() < 1e-11
+    impacts = bb.simulate(ball, amplitude=0.0, velocity=-2.0, impacts=60)
+    assert np.abs(impacts.bounce_velocity - 2).max() < 1e-11
     # A half oscillation about the depth 1/ϖ² at rest, and the part of the period above it.
     duration = (2 * np.pi - 2 * np.arctan(2 * ratio)) / ratio
-    assert np.abs(found.contact_duration - duration).max() < 1e-11
+    assert np.abs(impacts.contact_duration - duration).max() < 1e-11
 
 
 def test_contacts_last_below_the_limit_of_permanent_contact():
@@ -263,8 +267,8 @@ def test_contacts_last_below_the_limit_of_permanent_contact():
     zeta = float(ball.zeta)
     limit = np.sqrt((25 - 1) ** 2 + (2 * zeta * 5) ** 2) / 25
     start = {"phase": 3.0, "relative_velocity": -1e-6, "impacts": 40}
-    found = bb.simulate(ball, amplitude=[0.99 * limit, 1.01 * limit], **start)
-    assert found.status.values.tolist() == ["permanent contact", "bouncing"]
+    impacts = bb.simulate(ball, amplitude=[0.99 * limit, 1.01 * limit], **start)
+    assert impacts.status.values.tolist() == ["permanent contact", "bouncing"]
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
@@ -300,11 +304,11 @@ def test_contacts_resume_on_the_line_of_zero_force(many, ratio, zeta, amplitude,
     ball = bb.SpringDamper(ratio, damping_ratio=zeta, release="force")
     start = xr.DataArray(np.full(many, phase), dims="ball")
     given = {"amplitude": amplitude, "phase": start, "relative_velocity": -speed}
-    found = bb.simulate(ball, **given, impacts=5).isel(ball=0)
+    impacts = bb.simulate(ball, **given, impacts=5).isel(ball=0)
     tau, u = reference(ball, amplitude, phase, speed, 5)
-    assert found.relative_impact_velocity[1] > 1e-2
-    assert np.abs(found.time - (tau - phase)).max() < 1e-8
-    assert np.abs(found.relative_impact_velocity + u).max() < 1e-8
+    assert impacts.relative_impact_velocity[1] > 1e-2
+    assert np.abs(impacts.time - (tau - phase)).max() < 1e-8
+    assert np.abs(impacts.relative_impact_velocity + u).max() < 1e-8
 
 
 def test_balls_rest_side_by_side_as_one_by_one():
@@ -313,18 +317,18 @@ def test_balls_rest_side_by_side_as_one_by_one():
     phase = xr.DataArray(np.linspace(-3, 3, 60), dims="ball")
     amplitude = xr.DataArray(np.linspace(1.5, 2.5, 60), dims="ball")
     given = {"relative_velocity": -0.05, "impacts": 15}
-    found = bb.simulate(ball, amplitude=amplitude, phase=phase, **given)
-    rests = found.contact_duration > 0
+    impacts = bb.simulate(ball, amplitude=amplitude, phase=phase, **given)
+    rests = impacts.contact_duration > 0
     assert rests.any("impact").mean() > 0.5
-    leaves = (found.impact_phase + found.contact_duration).where(rests) % PERIOD
+    leaves = (impacts.impact_phase + impacts.contact_duration).where(rests) % PERIOD
     falls = amplitude * np.sin(leaves) > 1 + 1e-9
     assert np.abs(leaves - np.arcsin(1 / amplitude)).where(~falls).max() < 1e-12
     # The time to the next impact is that of the rest and of the flight.
-    lasts = found.contact_duration + found.flight_time
-    assert np.abs(found.time.diff("impact") - lasts.values[:, :-1]).max() < 1e-12
+    lasts = impacts.contact_duration + impacts.flight_time
+    assert np.abs(impacts.time.diff("impact") - lasts.values[:, :-1]).max() < 1e-12
     for j in range(0, 60, 7):
         alone = bb.simulate(ball, amplitude=float(amplitude[j]), phase=float(phase[j]), **given)
-        assert np.abs(alone.time.values - found.time.values[j]).max() < 1e-6
+        assert np.abs(alone.time.values - impacts.time.values[j]).max() < 1e-6
 
 
 @pytest.mark.parametrize("many", [1, 50])
@@ -333,10 +337,10 @@ def test_a_ball_that_is_laid_on_the_table(many):
     ball = bb.SpringDamper(10.0, restitution=0.5)
     amplitude = xr.DataArray(np.repeat([0.3, 2.0], many), dims="ball")
     given = {"amplitude": amplitude, "phase": 3.0, "relative_velocity": 0.0, "impacts": 2}
-    found = bb.simulate(ball, **given)
-    assert (found.status[:many] == "permanent contact").all()
+    impacts = bb.simulate(ball, **given)
+    assert (impacts.status[:many] == "permanent contact").all()
     end, _ = contact(2.0, 3.0, 1e-12, oscillator(ball))
-    assert np.abs(found.contact_duration[many:, 0] - (end - 3.0)).max() < 1e-8
+    assert np.abs(impacts.contact_duration[many:, 0] - (end - 3.0)).max() < 1e-8
     stays = bb.simulate(bb.Rigid(0.5), **given)
     assert (stays.status[:many] == "permanent contact").all()
     lift_off = np.arcsin(0.5) + PERIOD
@@ -348,12 +352,12 @@ def test_contacts_near_the_resonance_and_overdamped_ones_are_simulated():
     far = bb.simulate(bb.SpringDamper(1 + 1e-7, damping_ratio=0.0), amplitude=0.7, impacts=4)
     assert np.abs(near.time - far.time).max() < 1e-4
     over = bb.SpringDamper(10.0, damping_ratio=1.5)
-    found = bb.simulate(over, amplitude=2.0, phase=0.5, impacts=3)
+    impacts = bb.simulate(over, amplitude=2.0, phase=0.5, impacts=3)
     tau, u = 0.5, np.pi + 2 * np.cos(0.5)
     for k in range(2):
         leaves, w = contact(2.0, tau, u, lambda gap, rate: -30 * rate - 100 * gap)
         tau, u = flight(2.0, leaves, 0.0, w)
-        assert abs(found.time[k + 1] - (tau - 0.5)) < 1e-8
+        assert abs(impacts.time[k + 1] - (tau - 0.5)) < 1e-8
 
 
 def test_plain_python_gives_the_numbers_of_compiled_loops(monkeypatch):
@@ -382,7 +386,7 @@ def test_late_impacts_keep_the_digits_of_the_phase():
 def test_a_ball_over_time():
     ball = bb.SpringDamper(5.0, restitution=0.6)
     start = {"amplitude": 1.2, "phase": 0.5}
-    found = bb.history(ball, **start, periods=4.0, samples=100)
+    history = bb.history(ball, **start, periods=4.0, samples=100)
     impacts = bb.simulate(ball, **start, impacts=5)
 
     def motion(t, y):
@@ -392,26 +396,28 @@ def test_a_ball_over_time():
 
     # The first contact, and the flight after it.
     end = 0.5 + float(impacts.contact_duration[0])
-    inside = found.time.values < end - 0.5
+    inside = history.time.values < end - 0.5
     begin = [1.2 * np.sin(0.5), -np.pi]
     exact = solve_ivp(
-        motion, (0.5, end), begin, rtol=1e-12, atol=1e-12, t_eval=0.5 + found.time.values[inside]
+        motion, (0.5, end), begin, rtol=1e-12, atol=1e-12, t_eval=0.5 + history.time.values[inside]
     )
-    assert np.abs(found.ball.values[inside] - exact.y[0]).max() < 1e-9
-    assert np.abs(found.ball_velocity.values[inside] - exact.y[1]).max() < 1e-8
-    assert found.contact.values[inside].all()
-    speed = np.gradient(found.ball.values, found.time.values)
-    assert np.abs(speed - found.ball_velocity.values)[1:-1].max() < 0.3
-    assert ((found.ball - found.table > -1e-12) | found.contact).all()
+    assert np.abs(history.ball.values[inside] - exact.y[0]).max() < 1e-9
+    assert np.abs(history.ball_velocity.values[inside] - exact.y[1]).max() < 1e-8
+    assert history.contact.values[inside].all()
+    speed = np.gradient(history.ball.values, history.time.values)
+    assert np.abs(speed - history.ball_velocity.values)[1:-1].max() < 0.3
+    assert ((history.ball - history.table > -1e-12) | history.contact).all()
 
 
 def test_a_dropped_ball_falls_freely_and_comes_to_rest():
-    found = bb.drop(bb.Rigid(0.5), height=[2.0, 8.0], periods=4.0)
-    falls = found.time <= 2.0
-    assert np.abs(found.ball.sel(height=2.0) - (2 - found.time**2 / 2)).where(falls).max() < 1e-12
+    history = bb.drop(bb.Rigid(0.5), height=[2.0, 8.0], periods=4.0)
+    falls = history.time <= 2.0
+    assert (
+        np.abs(history.ball.sel(height=2.0) - (2 - history.time**2 / 2)).where(falls).max() < 1e-12
+    )
     # It lands with √(2h), and rests after √(2h) (1 + 2r/(1 - r)).
-    assert not found.contact.sel(height=2.0, time=slice(0, 5.9)).any()
-    assert found.contact.sel(height=2.0, time=slice(6.01, None)).all()
+    assert not history.contact.sel(height=2.0, time=slice(0, 5.9)).any()
+    assert history.contact.sel(height=2.0, time=slice(6.01, None)).all()
     moving = bb.drop(bb.Rigid(0.5), height=3.0, amplitude=0.5, phase=1.0, periods=2.0)
     assert float(moving.ball[0]) == 3.0
     assert abs(float(moving.table[0]) - 0.5 * np.sin(1.0)) < 1e-15
@@ -420,11 +426,11 @@ def test_a_dropped_ball_falls_freely_and_comes_to_rest():
 
 def test_lists_span_a_grid_and_arrays_of_a_ball_vary_together():
     ball = bb.SpringDamper([5.0, 10.0, 20.0], restitution=[0.5, 0.6, 0.7])
-    found = bb.simulate(ball, amplitude=[1.0, 1.2], impacts=3)
-    assert found.time.dims == ("amplitude", "ball", "impact")
-    assert found.restitution.dims == ("ball",)
+    impacts = bb.simulate(ball, amplitude=[1.0, 1.2], impacts=3)
+    assert impacts.time.dims == ("amplitude", "ball", "impact")
+    assert impacts.restitution.dims == ("ball",)
     alone = bb.simulate(bb.SpringDamper(10.0, restitution=0.6), amplitude=1.2, impacts=3)
-    assert np.abs(found.time.sel(amplitude=1.2).isel(ball=1) - alone.time).max() < 1e-13
+    assert np.abs(impacts.time.sel(amplitude=1.2).isel(ball=1) - alone.time).max() < 1e-13
     assert alone.time.attrs == {"long_name": "time since the start", "symbol": "τ", "units": "1"}
     one = bb.simulate(bb.Rigid([0.5, 0.6]), amplitude=1.0, phase=[0.1, 0.2, 0.3], impacts=2)
     assert one.time.dims == ("phase", "restitution", "impact")
@@ -510,10 +516,10 @@ LAID = {
 def test_a_ball_that_is_dropped_from_the_table_itself_lies_on_it(name):
     """At rest, while the table rises, and while it falls as fast as a ball of the same speed."""
     ball = LAID[name]
-    found = bb.drop(ball, height=0.0, periods=0.3, samples=20)
-    assert found.contact[1:].all()
+    history = bb.drop(ball, height=0.0, periods=0.3, samples=20)
+    assert history.contact[1:].all()
     # At most twice the static penetration, which is 1/ϖ² for the spring, (1/K)^(2/3) for the law.
-    assert (np.abs(found.ball) < 2 * 3400 ** (-2 / 3)).all()
+    assert (np.abs(history.ball) < 2 * 3400 ** (-2 / 3)).all()
     rising = bb.drop(ball, height=0.5 * np.sin(0.3), amplitude=0.5, phase=0.3, periods=0.3)
     assert np.isfinite(rising.ball).all()
     assert (rising.ball > rising.table - 0.1).all()
@@ -526,23 +532,23 @@ def test_a_ball_that_is_dropped_from_the_table_itself_lies_on_it(name):
 def test_the_first_sample_of_a_drop_is_its_height(phase):
     """Also where rounding puts the beginning of the fall after the time 0."""
     for height in np.linspace(1.6, 9.0, 40):
-        found = bb.drop(bb.Rigid(0.5), height=height, amplitude=1.5, phase=phase, periods=0.1)
-        assert found.ball[0] == pytest.approx(height, abs=1e-12)
+        history = bb.drop(bb.Rigid(0.5), height=height, amplitude=1.5, phase=phase, periods=0.1)
+        assert history.ball[0] == pytest.approx(height, abs=1e-12)
 
 
 def test_a_ball_of_a_law_that_is_laid_on_the_table_is_followed_in_time():
     """Its root time is a million where that of an impact is one; an integrator has the same."""
     law = LAID["hertz"]
-    found = bb.history(law, amplitude=0.5, phase=0.3, relative_velocity=0.0, periods=0.5)
+    history = bb.history(law, amplitude=0.5, phase=0.3, relative_velocity=0.0, periods=0.5)
 
     def motion(t, y):
         force = law.force(max(-y[0], 0.0), -y[1], **law.values)
         return [y[1], -1 + 0.5 * np.sin(t + 0.3) + force]
 
-    times = found.time.values
+    times = history.time.values
     known = {"t_eval": times, "rtol": 1e-11, "atol": 1e-13}
     solution = solve_ivp(motion, (0, times[-1]), [0.0, -1e-12], "Radau", **known)
-    np.testing.assert_allclose(found.ball - found.table, solution.y[0], atol=1e-9)
+    np.testing.assert_allclose(history.ball - history.table, solution.y[0], atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -570,14 +576,14 @@ def test_landings_just_before_a_lift_off_take_few_steps(monkeypatch, table):
         whole = getattr(one_ball.safe_step, "py_func", one_ball.safe_step)
         landing = getattr(one_ball.landing, "py_func", one_ball.landing)
         monkeypatch.setattr(one_ball, "safe_step", counted)
-        found, _ = landing(0.0, 0.0, speed, *waves, 1.5)
+        time, _ = landing(0.0, 0.0, speed, *waves, 1.5)
     else:
         whole = bounces.safe_steps
         monkeypatch.setattr(bounces, "safe_steps", counted)
-        given = (np.array([each]) for each in (0.0, 1.0, 0.0, speed, *waves))
-        found = bounces.landings(table, *given)[0]
+        given = (np.array([number]) for number in (0.0, 1.0, 0.0, speed, *waves))
+        time = bounces.landings(table, *given)[0]
     known = 2 * speed / (gravity / 2 + np.sqrt(gravity**2 / 4 - 2 * speed * x / 3))
-    assert found == pytest.approx(known, rel=np.finfo(float).eps / speed)
+    assert time == pytest.approx(known, rel=np.finfo(float).eps / speed)
 
 
 def test_results_that_do_not_fit_into_memory():

@@ -51,7 +51,7 @@ def touching(ball, amplitude, tau, u, harmonics=SINE, gravity=1.0):
 
     release.terminal, release.direction = True, 1
     start = 2 * float(ball.zeta) / ball.frequency_ratio * u if u < 0 else 0.0
-    found = solve_ivp(
+    solution = solve_ivp(
         motion,
         (tau, tau + 60),
         [start, -u],
@@ -63,7 +63,7 @@ def touching(ball, amplitude, tau, u, harmonics=SINE, gravity=1.0):
         max_step=0.02,
         dense_output=True,
     )
-    return found.t_events[0][0], *found.y_events[0][0], found.sol
+    return solution.t_events[0][0], *solution.y_events[0][0], solution.sol
 
 
 def contact(ball, amplitude, tau, u, harmonics=SINE):
@@ -178,22 +178,22 @@ def leg(ball, amplitude, tau, u, harmonics=SINE):
 
 def heights(ball, amplitude, tau, u, times, harmonics=SINE):
     """Heights of a ball at times after an impact, in contacts and flights."""
-    found = np.full(len(times), np.nan)
+    height = np.full(len(times), np.nan)
     while tau <= times[-1]:
         leaves = tau
         if ball.has_duration:
             leaves, gap, speed, motion = touching(ball, amplitude, tau, u, harmonics)
             during = np.flatnonzero((times >= tau) & (times < leaves))
             for i in during:
-                found[i] = motion(times[i])[0] + amplitude * waveform(harmonics, times[i])
+                height[i] = motion(times[i])[0] + amplitude * waveform(harmonics, times[i])
         else:
             gap, speed, _ = instant(ball, amplitude, tau, u, harmonics)
         s = times[times >= leaves] - leaves
         velocity = speed + amplitude * waveform(harmonics, leaves, 1)
         level = gap + amplitude * waveform(harmonics, leaves)
-        found[times >= leaves] = level + velocity * s - s * s / 2
+        height[times >= leaves] = level + velocity * s - s * s / 2
         tau, u, _ = leg(ball, amplitude, tau, u, harmonics)
-    return found
+    return height
 
 
 def around(orbit, shift=(0.0, 0.0)):

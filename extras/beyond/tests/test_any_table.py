@@ -213,7 +213,7 @@ def test_return_maps_differ_by_second_order_in_c1(touch):
 
         def apart(place, ratio=ratio):
             maps = (on_contact, in_corrected_model)
-            contact_map, corrected = (each(table, place, 1.1, ratio) for each in maps)
+            contact_map, corrected = (return_map(table, place, 1.1, ratio) for return_map in maps)
             return contact_map - corrected
 
         place = np.array(touch)
@@ -263,9 +263,9 @@ def test_one_less_trace_plus_determinant_is_the_slope_of_the_balance():
     psi, _ = instant(place)
     slope = by_psi + by_v * amplitude * table.at(psi, 2)
     expected = -2 * np.pi / velocity * np.linalg.det(to_instant) * slope
-    found = 1 - np.trace(map_slope) + np.linalg.det(map_slope)
+    characteristic = 1 - np.trace(map_slope) + np.linalg.det(map_slope)
     assert abs(expected) > 0.1
-    assert found == pytest.approx(expected, abs=1e-5)
+    assert characteristic == pytest.approx(expected, abs=1e-5)
 
 
 # What a phase tells
@@ -324,7 +324,7 @@ def test_touches_tell_the_angle_the_restitution_and_the_duration(force, within):
         scale = angle / (share + r * lasts / (1 + r))
         return np.pi * (1 - r) / (1 + r) - share * scale, lasts * scale
 
-    found = brentq(lambda r: linear_with(r)[0] - level, 0.1, 0.99, xtol=1e-12)
-    assert found == pytest.approx(r, abs=0.003)
+    restitution = brentq(lambda r: linear_with(r)[0] - level, 0.1, 0.99, xtol=1e-12)
+    assert restitution == pytest.approx(r, abs=0.003)
 
-    assert ratio * linear_with(found)[1] == pytest.approx(duration, rel=0.03)
+    assert ratio * linear_with(restitution)[1] == pytest.approx(duration, rel=0.03)

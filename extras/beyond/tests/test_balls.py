@@ -36,10 +36,12 @@ def integrated(ball, tau, u, amplitude, end):
     shortest = min(1.0, 1 / ratio)
     start = [float(ball.start(u)), -u]
     options = {"rtol": 1e-13, "atol": 1e-16, "first_step": 1e-3 * shortest * min(abs(u), 1)}
-    found = solve_ivp(
+    solution = solve_ivp(
         motion, (0, end), start, "DOP853", events=release, max_step=shortest / 4, **options
     )
-    return (found.t_events[0][0], *found.y_events[0][0]) if found.t_events[0].size else None
+    return (
+        (solution.t_events[0][0], *solution.y_events[0][0]) if solution.t_events[0].size else None
+    )
 
 
 def random_balls(seed, number):
@@ -63,11 +65,11 @@ def test_contacts_against_an_integrator():
             assert integrated(ball, tau, u, amplitude, 30.0) is None
             continue
         expected = integrated(ball, tau, u, amplitude, 1.1 * duration + 0.1)
-        found = ball.contact(tau, u, T, amplitude)
+        impact = ball.contact(tau, u, T, amplitude)
         scale = duration, u / ball.frequency_ratio + duration**2, u + amplitude + 1
-        errors = np.subtract(found[:3], expected) / scale
+        errors = np.subtract(impact[:3], expected) / scale
         assert np.abs(errors).max() < INTEGRATED * max(1, duration)
-        assert abs(found.release) < 1e-13 * (u + 1 / ball.frequency_ratio)
+        assert abs(impact.release) < 1e-13 * (u + 1 / ball.frequency_ratio)
     assert 3 < lasting < 25
 
 
@@ -116,9 +118,9 @@ def test_first_releases_side_by_side():
     """Arrays of balls and impacts broadcast, and give the numbers that each gives alone."""
     balls = SpringDamper(np.array([1.0, 4.0, 30.0]), restitution=np.array([0.9, 0.5, 0.7]))
     tau, u = np.linspace(0, 6, 5)[:, None], np.array([2.0, 0.1, 1.0])
-    found = balls.first_release(tau, u, 1.5)
-    assert found.shape == (5, 3)
-    for (row, column), T in np.ndenumerate(found):
+    releases = balls.first_release(tau, u, 1.5)
+    assert releases.shape == (5, 3)
+    for (row, column), T in np.ndenumerate(releases):
         values = {name: value[column] for name, value in balls.parameters.items()}
         alone = balls.at(**values).first_release(tau[row, 0], u[column], 1.5)
         np.testing.assert_allclose(alone, T, rtol=1e-12)
@@ -151,7 +153,7 @@ def test_a_resumed_contact_starts_where_its_force_vanishes():
 def sixty_digits(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     """δ and δ′ by Eqs. 12 and 13; at ϖ = 1, ζ = 0 and at ζ = 1 next to these values, by 1e-25."""
     s, tau, gap, u, amplitude, gravity, ratio, zeta = (
-        mpmath.mpf(each) for each in (s, tau, gap, u, amplitude, gravity, ratio, zeta)
+        mpmath.mpf(number) for number in (s, tau, gap, u, amplitude, gravity, ratio, zeta)
     )
     zeta += mpmath.mpf(10) ** -25
     decay, stiffness = zeta * ratio, ratio**2
@@ -198,7 +200,7 @@ def test_all_digits_near_resonance_and_critical_damping(ratio, zeta):
         step = mpmath.mpf(10) ** -18
         for scaled_duration in (1e-6, 0.8, 3.0, np.pi, 9.0):
             given = [scaled_duration / ratio, 0.7, -0.1 / ratio, 1.3, 1.8, 1.0, ratio, zeta]
-            found = np.array(in_contact(*given))
+            state = np.array(in_contact(*given))
             expected = sixty_digits(*given)
             derivatives = np.empty((len(given), 2))
             errors = np.empty((len(given), 2))
@@ -209,13 +211,13 @@ def test_all_digits_near_resonance_and_critical_damping(ratio, zeta):
                 ends = sixty_digits(*up), sixty_digits(*down)
                 exact = [(high - low) / (2 * step) for high, low in zip(*ends, strict=True)]
                 by_step = np.imag(in_contact(*complex_step)) / H
-                derivatives[i] = [float(each) for each in exact]
+                derivatives[i] = [float(slope) for slope in exact]
                 errors[i] = [float(a - b) for a, b in zip(by_step, exact, strict=True)]
             # Arguments have rounding errors of 1e-16, which a value has times its derivatives. Each
             # of up to seven doublings adds some.
             scale = np.abs(derivatives * np.array(given)[:, None]).max(axis=0)
             assert (
-                np.abs([float(a - b) for a, b in zip(found, expected, strict=True)]) < 8e-15 * scale
+                np.abs([float(a - b) for a, b in zip(state, expected, strict=True)]) < 8e-15 * scale
             ).all()
             # Those of derivatives are of the size of the largest change of the motion itself.
             natural = scale / np.maximum(np.abs(given), 1e-3)[:, None] + np.abs(derivatives)
@@ -234,8 +236,8 @@ def test_free_contacts_that_end_by_the_force(zeta):
         slope = mpmath.diff(exact, mpmath.mpf(zeta), h=mpmath.mpf(10) ** -18)
         expected = float(exact(zeta)), float(slope)
     ball = SpringDamper(1.0, damping_ratio=0.5, release="force")
-    found = ball.at(damping_ratio=zeta + 1j * H).free(1.0)
-    np.testing.assert_allclose((found.real, found.imag / H), expected, rtol=4e-15)
+    T = ball.at(damping_ratio=zeta + 1j * H).free(1.0)
+    np.testing.assert_allclose((T.real, T.imag / H), expected, rtol=4e-15)
 
 
 def test_derivatives_by_complex_steps():
@@ -318,12 +320,12 @@ def test_instants_are_right_to_second_order(release):
     def difference(ratio):
         contact = SpringDamper(ratio, restitution=0.6, release=release)
         instant = Corrected(contact)
-        found = instant.contact(tau, v, None, amplitude)
-        assert found.gap == instant.start(v) and found.duration == 0 and found.release == 0
-        after = flight_after(tau, found.gap, found.speed, tau + 1)
+        impact = instant.contact(tau, v, None, amplitude)
+        assert impact.gap == instant.start(v) and impact.duration == 0 and impact.release == 0
+        after = flight_after(tau, impact.gap, impact.speed, tau + 1)
         # The same flight before, at the level of the table.
-        start = brentq(lambda t: flight_after(tau, found.gap, -v, t)[0], tau - 3 / ratio, tau)
-        u = -flight_after(tau, found.gap, -v, start)[1]
+        start = brentq(lambda t: flight_after(tau, impact.gap, -v, t)[0], tau - 3 / ratio, tau)
+        u = -flight_after(tau, impact.gap, -v, start)[1]
         end = contact.contact(start, u, contact.first_release(start, u, amplitude), amplitude)
         return np.abs(flight_after(start + end.duration, end.gap, end.speed, tau + 1) - after).max()
 
@@ -344,15 +346,15 @@ def test_parameters_and_other_values():
     assert Corrected(ball).parameters == ball.parameters
     assert Rigid(0.5).at(restitution=0.6) == Rigid(0.6)
     assert isinstance(Rigid([0.5, 0.6]).restitution, np.ndarray)
-    assert [each.has_duration for each in (ball, instant, Rigid(0.5))] == [True, False, False]
+    assert [model.has_duration for model in (ball, instant, Rigid(0.5))] == [True, False, False]
 
 
 def test_a_restitution_of_one_is_no_damping():
     """r = 1 has ζ = 0, and at ϖ = 1 the contact is finite with its derivatives."""
     ball = SpringDamper(1.0, restitution=1.0)
     assert ball.zeta == 0
-    found = ball.at(frequency_ratio=1 + 1j * H).contact(0.3, 1.0, np.pi, 1.0)
-    assert np.isfinite(found).all()
+    impact = ball.at(frequency_ratio=1 + 1j * H).contact(0.3, 1.0, np.pi, 1.0)
+    assert np.isfinite(impact).all()
 
 
 @pytest.mark.parametrize(

@@ -33,19 +33,19 @@ from bouncing_ball_beyond.tables.table import Table
 CLOSE = 1e-11
 
 
-def at_event(rates, event, found):
+def at_event(rates, event, solution):
     """Time and state at an event, by a step that ends there.
 
     The interpolation of the last step is not smooth, because this step crosses a kink.
     """
 
     def reached(t):
-        start, state = found.t[-2], found.y[:, -2]
+        start, state = solution.t[-2], solution.y[:, -2]
         step = solve_ivp(rates, (start, t), state, "DOP853", rtol=3e-14, atol=1e-16)
         return step.y[:, -1]
 
-    late = found.t[-1]
-    early = max(found.t[-2], late - 1e-6)
+    late = solution.t[-1]
+    early = max(solution.t[-2], late - 1e-6)
     t = brentq(lambda t: event(t, reached(t)), early, late + 1e-6, xtol=1e-15)
     return t, reached(t)
 
@@ -74,7 +74,7 @@ def integrated(law, tau, u, amplitude, gravity=1.0, longest=10.0):
     end.direction = -1
     t, state = 0.0, np.array([0.0, u])
     while t < longest:
-        found = solve_ivp(
+        solution = solve_ivp(
             rates,
             (t, longest),
             state,
@@ -87,10 +87,10 @@ def integrated(law, tau, u, amplitude, gravity=1.0, longest=10.0):
             # step misses this push if none of its stages is in it.
             max_step=1e-3,
         )
-        which = [i for i, times in enumerate(found.t_events) if times.size]
+        which = [i for i, times in enumerate(solution.t_events) if times.size]
         if not which:
             break
-        t, state = at_event(rates, events[which[0]], found)
+        t, state = at_event(rates, events[which[0]], solution)
         if which == [0]:
             return t, state[0], -state[1]
         # Past the kink.
@@ -268,8 +268,8 @@ def test_parameters_may_be_lists():
     def spring(p, v, stiffness):
         return stiffness * p
 
-    found = ForceLaw(spring, {"stiffness": [400.0, 500.0]}).signature(2.0)
-    np.testing.assert_allclose(found.duration, np.pi / np.sqrt([400.0, 500.0]), 1e-11)
+    signature = ForceLaw(spring, {"stiffness": [400.0, 500.0]}).signature(2.0)
+    np.testing.assert_allclose(signature.duration, np.pi / np.sqrt([400.0, 500.0]), 1e-11)
 
 
 class TestClosedForms:
@@ -279,24 +279,24 @@ class TestClosedForms:
         ball = SpringDamper(20.0, damping_ratio=0.13, release=release)
         steps = 1j * H * np.eye(4)[:, :, np.newaxis]
         tau, u, T, amplitude = np.array([1.0, 4.0]), np.array([3.0, 0.7]), 0.12, 0.9
-        found = law.contact(tau + steps[0], u + steps[1], T + steps[2], amplitude + steps[3])
+        impact = law.contact(tau + steps[0], u + steps[1], T + steps[2], amplitude + steps[3])
         exact = ball.contact(
             tau + steps[0], u + steps[1], 20 * (T + steps[2]), amplitude + steps[3]
         )
-        for each, other in zip(found[:3], exact[:3], strict=True):
-            np.testing.assert_allclose(each.real, other.real, rtol=0, atol=1e-13)
-            np.testing.assert_allclose(each.imag / H, other.imag / H, rtol=0, atol=1e-11)
-        for each, other in zip(law.signature(3.0), ball.signature(3.0), strict=True):
-            assert abs(each - other) < CLOSE * max(other, 0.1)
+        for quantity, other in zip(impact[:3], exact[:3], strict=True):
+            np.testing.assert_allclose(quantity.real, other.real, rtol=0, atol=1e-13)
+            np.testing.assert_allclose(quantity.imag / H, other.imag / H, rtol=0, atol=1e-11)
+        for quantity, other in zip(law.signature(3.0), ball.signature(3.0), strict=True):
+            assert abs(quantity - other) < CLOSE * max(other, 0.1)
 
     def test_resumed_contact_of_linear(self):
         law = linear(20.0, 0.13, release="force")
         ball = SpringDamper(20.0, damping_ratio=0.13, release="force")
         u = -0.2 + 1j * H
-        found, exact = law.contact(1.0, u, 0.05, 0.9), ball.contact(1.0, u, 20 * 0.05, 0.9)
-        for each, other in zip(found[:3], exact[:3], strict=True):
-            assert abs(each.real - other.real) < 1e-13
-            assert abs(each.imag - other.imag) < 1e-11 * H
+        impact, exact = law.contact(1.0, u, 0.05, 0.9), ball.contact(1.0, u, 20 * 0.05, 0.9)
+        for quantity, other in zip(impact[:3], exact[:3], strict=True):
+            assert abs(quantity.real - other.real) < 1e-13
+            assert abs(quantity.imag - other.imag) < 1e-11 * H
 
     def test_damper_on_approach_only(self):
         zeta = 0.3
@@ -370,34 +370,38 @@ class TestDerivatives:
         names = [*values, *law.values]
 
         def state(**changed):
-            ball = law.at(**{each: x for each, x in changed.items() if each in law.values})
-            arguments = values | {each: x for each, x in changed.items() if each in values}
+            ball = law.at(
+                **{argument: x for argument, x in changed.items() if argument in law.values}
+            )
+            arguments = values | {
+                argument: x for argument, x in changed.items() if argument in values
+            }
             end = ball.contact(**arguments)
             first = ball.first_impact(**{k: x for k, x in arguments.items() if k != "T"})[1]
             return np.array([end.duration, end.gap, end.speed, end.release, *first[:3]])
 
-        for each in names:
-            at = (values | law.values)[each]
+        for argument in names:
+            at = (values | law.values)[argument]
             step = 1e-4 * at
-            by_step = state(**{each: at + 1j * H}).imag / H
-            sides = [state(**{each: at + k * step}) for k in (-2, -1, 1, 2)]
+            by_step = state(**{argument: at + 1j * H}).imag / H
+            sides = [state(**{argument: at + k * step}) for k in (-2, -1, 1, 2)]
             difference = (sides[0] - 8 * sides[1] + 8 * sides[2] - sides[3]) / (12 * step)
             scale = np.abs(state()) / at
-            assert np.all(np.abs(by_step - difference) < 1e-8 * (1 + scale)), each
+            assert np.all(np.abs(by_step - difference) < 1e-8 * (1 + scale)), argument
 
     def test_interpolated_signature(self):
         law = kuwabara_kono(1000.0, 0.01)
         u = np.array([0.03, 1.0, 2.7, 40.0]) * (1 + 1j * H)
-        for each, other in zip(law.signature(u), law.computed_signature(u), strict=True):
+        for quantity, other in zip(law.signature(u), law.computed_signature(u), strict=True):
             # The differences of σ have rounding errors of 1e-12 of the duration.
-            np.testing.assert_allclose(each.real, other.real, rtol=CLOSE, atol=1e-12)
-            np.testing.assert_allclose(each.imag / H, other.imag / H, rtol=1e-9, atol=1e-12)
+            np.testing.assert_allclose(quantity.real, other.real, rtol=CLOSE, atol=1e-12)
+            np.testing.assert_allclose(quantity.imag / H, other.imag / H, rtol=1e-9, atol=1e-12)
 
     def test_signature_of_a_row_of_laws(self):
         law = tsuji(np.array([500.0, 2000.0]), 0.4)
         signature = law.signature(np.array([3.0, 2.0]))
         single = tsuji(2000.0, 0.4).signature(2.0)
-        np.testing.assert_allclose([each[1] for each in signature], single, rtol=1e-10)
+        np.testing.assert_allclose([quantity[1] for quantity in signature], single, rtol=1e-10)
 
 
 def bilinear(p, v, soft, hard, depth, damping):
@@ -1153,7 +1157,7 @@ def test_contacts_in_one_panel_are_those_in_many(law: Callable) -> None:
     T = ball.first_release(tau, u, 1.2)
     steps = 1j * H * np.eye(4)[..., np.newaxis]
     given = tau + steps[0], u + steps[1], 1.2 + steps[2], 1.0, T * (1 + 0.01 * steps[3])
-    impacts = (ball._followed(*given, guessed=each)[1] for each in (True, False))
+    impacts = (ball._followed(*given, guessed=guess)[1] for guess in (True, False))
     # The gap is zero but for rounding, as the fourth power of the release function.
     guessed, alone = (np.array([x.duration, x.speed, x.release]) for x in impacts)
     assert not np.array_equal(guessed, alone)
@@ -1188,8 +1192,10 @@ def test_derivatives_in_one_panel_are_those_of_differences() -> None:
 )
 def test_a_law_of_an_impact_has_its_full_damping_at_a_tenth_of_the_depth(law, scale):
     """The depth that the page on laws names, for one who copies it into a multibody program."""
-    found = law(restitution=0.7, duration=0.2, speed=3.5).parameters
-    assert found["depth"] == pytest.approx(0.1 * scale(found["stiffness"], 3.5), rel=1e-12)
+    parameters = law(restitution=0.7, duration=0.2, speed=3.5).parameters
+    assert parameters["depth"] == pytest.approx(
+        0.1 * scale(parameters["stiffness"], 3.5), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(

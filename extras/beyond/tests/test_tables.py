@@ -60,17 +60,17 @@ def test_each_table_of_a_row_has_its_bounds():
     sizes = np.array([0.1, 0.4])
     expected = np.transpose([two.at(harmonic_3=size).bounds for size in sizes])
     for row in (sizes, sizes[:, np.newaxis]):
-        found = np.array(two.at(harmonic_3=row).bounds).reshape(6, 2)
-        np.testing.assert_allclose(found, expected, 1e-14)
+        bounds = np.array(two.at(harmonic_3=row).bounds).reshape(6, 2)
+        np.testing.assert_allclose(bounds, expected, 1e-14)
 
 
 @pytest.mark.parametrize("name", TABLES)
 def test_where_a_table_falls_as_fast_as_a_ball(name):
     table = TABLES[name]
     amplitude = np.array([0.5, 1.0, 1.7])
-    found = table.levels(amplitude)
+    levels = table.levels(amplitude)
     tau = np.linspace(0, 2 * np.pi, 100001)
-    for phases, scale in zip(found, amplitude, strict=True):
+    for phases, scale in zip(levels, amplitude, strict=True):
         phases = phases[np.isfinite(phases)]
         assert np.abs(1 + scale * table(phases, 2)).max(initial=0) < 1e-12
         changes = np.diff(np.sign(1 + scale * table(tau, 2))) != 0
@@ -86,12 +86,14 @@ def test_samples_give_the_table_and_those_of_an_acceleration_too():
     table = TABLES["three harmonics"]
     tau = 2 * np.pi * np.arange(40) / 40
     greatest = np.abs(table(np.linspace(0, 2 * np.pi, 1_000_001), 2)).max()
-    for found in (
+    for sampled_table in (
         Table.of_samples(3 * table(tau) + 7),
         Table.of_samples(5 * table(tau, 2) - 1, acceleration=True),
     ):
-        np.testing.assert_allclose(greatest * found(tau, 1), table(tau, 1), atol=1e-11)
-        assert np.abs(found(np.linspace(0, 7, 100_001), 2)).max() == pytest.approx(1, abs=1e-8)
+        np.testing.assert_allclose(greatest * sampled_table(tau, 1), table(tau, 1), atol=1e-11)
+        assert np.abs(sampled_table(np.linspace(0, 7, 100_001), 2)).max() == pytest.approx(
+            1, abs=1e-8
+        )
 
 
 @pytest.mark.parametrize(
@@ -141,12 +143,12 @@ def test_samples_that_are_not_those_of_one_period_are_refused(values, others, te
 def test_noisy_heights_give_their_table_with_as_many_harmonics_as_are_meant():
     table = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
     noise = np.random.default_rng(1).normal(0, 0.002, 200)
-    found = Table.of_samples(table(np.arange(200) * 2 * np.pi / 200) + noise, harmonics=5)
-    node = bb.limits(bb.Rigid(0.6), table=found).saddle_node.amplitude * found.slope
+    sampled_table = Table.of_samples(table(np.arange(200) * 2 * np.pi / 200) + noise, harmonics=5)
+    node = bb.limits(bb.Rigid(0.6), table=sampled_table).saddle_node.amplitude * sampled_table.slope
     # By the closed form Λ max W′ = C, whatever the harmonics.
     assert node == pytest.approx(np.pi * 0.25, rel=1e-9)
     # A fit of 200 samples has a tenth of their noise; 2e-3 is that of a third harmonic times 9.
-    assert table.acceleration * found.slope == pytest.approx(table.slope, abs=4e-3)
+    assert table.acceleration * sampled_table.slope == pytest.approx(table.slope, abs=4e-3)
 
 
 def test_a_record_of_any_length_gives_the_table_and_its_amplitude():
@@ -154,25 +156,27 @@ def test_a_record_of_any_length_gives_the_table_and_its_amplitude():
     table = Table([(1, 1.0, 0.4), (3, 0.05, 0.7)])
     time = np.sort(np.random.default_rng(2).uniform(0, 0.416, 900))
     signal = 9.81 + 0.9 * 9.80665 * table(2 * np.pi * 25 * time, 2)
-    found = Table.of_record(time, signal, frequency=25.2, harmonics=5)
-    assert found.amplitude == pytest.approx(0.9 * table.acceleration, rel=1e-9)
-    assert found.frequency == pytest.approx(25.0, rel=1e-9)
-    assert found.residual < 1e-9
+    measured_table = Table.of_record(time, signal, frequency=25.2, harmonics=5)
+    assert measured_table.amplitude == pytest.approx(0.9 * table.acceleration, rel=1e-9)
+    assert measured_table.frequency == pytest.approx(25.0, rel=1e-9)
+    assert measured_table.residual < 1e-9
     tau = np.linspace(0, 7, 50)
-    np.testing.assert_allclose(found.amplitude * found.table(tau), 0.9 * table(tau), atol=1e-8)
+    np.testing.assert_allclose(
+        measured_table.amplitude * measured_table.table(tau), 0.9 * table(tau), atol=1e-8
+    )
     two = Table([(12, 0.01, 0.3), (17, 0.006, 1.0)])
     signal = 9.80665 * two(2 * np.pi * 8 * time, 2)
-    found = Table.of_record(time, signal, frequency=8.0, harmonics=[12, 17])
-    assert found.table.orders == (12, 17)
-    assert found.amplitude == pytest.approx(two.acceleration, rel=1e-9)
+    measured_table = Table.of_record(time, signal, frequency=8.0, harmonics=[12, 17])
+    assert measured_table.table.orders == (12, 17)
+    assert measured_table.amplitude == pytest.approx(two.acceleration, rel=1e-9)
 
 
 def test_a_drift_that_does_not_end_as_it_begins_is_no_tone():
     time = np.arange(0, 60, 1e-3)
     noise = np.random.default_rng(3).normal(0, 0.03, time.size)
     signal = 9.80665 * np.sin(2 * np.pi * 31.7 * time) + 0.5 * np.sin(0.19 * time) + noise
-    found = Table.of_record(time, signal, frequency=31.7, harmonics=1)
-    assert abs(found.amplitude - 1) < 3 * found.amplitude_error
+    measured_table = Table.of_record(time, signal, frequency=31.7, harmonics=1)
+    assert abs(measured_table.amplitude - 1) < 3 * measured_table.amplitude_error
 
 
 def made_record(generator, seconds, change=None):
@@ -198,11 +202,11 @@ def test_measured_tables_are_right_within_their_errors():
     within = []
     for seconds in np.geomspace(1, 60, 40):
         record, amplitude, frequency = made_record(generator, seconds)
-        found = Table.of_record(**record, harmonics=2)
-        off = [found.amplitude - amplitude, found.frequency - frequency]
-        errors = np.array([found.amplitude_error, found.frequency_error])
+        measured_table = Table.of_record(**record, harmonics=2)
+        off = [measured_table.amplitude - amplitude, measured_table.frequency - frequency]
+        errors = np.array([measured_table.amplitude_error, measured_table.frequency_error])
         within.append(np.abs(off) < 2 * errors)
-        assert found.residual == pytest.approx(0.3, rel=0.25)
+        assert measured_table.residual == pytest.approx(0.3, rel=0.25)
     assert np.sum(within, axis=0).min() >= 32
 
 
@@ -279,13 +283,15 @@ def test_a_sum_of_one_harmonic_is_the_sine(ball):
 def test_a_simulated_ball_is_an_integrated_one(name, ball):
     """Impact by impact, each from the simulated one before it."""
     table = TABLES[name]
-    found = bb.simulate(
+    impacts = bb.simulate(
         BALLS[ball], amplitude=0.9, phase=0.4, velocity=-4.0, impacts=8, table=table
     )
-    phase = found.impact_phase.values
-    u = -found.relative_impact_velocity.values
-    times = found.time.values
-    bounces = np.flatnonzero(np.isfinite(u[1:]) & (found.relative_bounce_velocity.values[:-1] > 0))
+    phase = impacts.impact_phase.values
+    u = -impacts.relative_impact_velocity.values
+    times = impacts.time.values
+    bounces = np.flatnonzero(
+        np.isfinite(u[1:]) & (impacts.relative_bounce_velocity.values[:-1] > 0)
+    )
     assert len(bounces) > 2
     for i in bounces:
         lands, closing, _ = leg(BALLS[ball], 0.9, phase[i], u[i], tuple(table.harmonics))
@@ -298,13 +304,13 @@ def test_no_touch_is_missed():
     rng = np.random.default_rng(92)
     for table in TABLES.values():
         given = {"amplitude": 3.0, "phase": rng.uniform(-3, 3, 60), "impacts": 6, "table": table}
-        found = bb.simulate(bb.Rigid(0.3), relative_velocity=-0.4, **given)
+        impacts = bb.simulate(bb.Rigid(0.3), relative_velocity=-0.4, **given)
         start, flight, w = (
-            found[name].values.ravel()
+            impacts[name].values.ravel()
             for name in ("impact_phase", "flight_time", "relative_bounce_velocity")
         )
         good = np.isfinite(flight) & (w > 1e-3)
-        start, flight, w = (each[good, np.newaxis] for each in (start, flight, w))
+        start, flight, w = (quantity[good, np.newaxis] for quantity in (start, flight, w))
         t = flight * np.linspace(1e-3, 1 - 1e-3, 400)
         height, _ = table.displacement(start, t)
         gap = (w + 3.0 * table(start, 1) - t / 2) * t - 3.0 * height
@@ -318,29 +324,29 @@ def test_no_touch_is_missed():
 @pytest.mark.parametrize("ball", ["force release", "overdamped", "resonant"])
 @pytest.mark.parametrize("name", TABLES)
 def test_all_orbits_are_those_of_an_integrated_ball(name, ball):
-    found = bb.orbits(BALLS[ball], amplitude=0.7, table=TABLES[name])
-    assert found or ball in ("overdamped", "resonant")
-    for each in found:
-        end, highest = around(each)
-        assert end == pytest.approx([each.times[0], each.speeds[0]], abs=1e-9)
-        assert highest == pytest.approx(each.max_height, abs=1e-7)
+    orbits = bb.orbits(BALLS[ball], amplitude=0.7, table=TABLES[name])
+    assert orbits or ball in ("overdamped", "resonant")
+    for orbit in orbits:
+        end, highest = around(orbit)
+        assert end == pytest.approx([orbit.times[0], orbit.speeds[0]], abs=1e-9)
+        assert highest == pytest.approx(orbit.max_height, abs=1e-7)
         step = 1e-5
-        moved = [[around(each, side * shift)[0] for side in (1, -1)] for shift in step * np.eye(2)]
+        moved = [[around(orbit, side * shift)[0] for side in (1, -1)] for shift in step * np.eye(2)]
         matrix = np.array([(up - down) / (2 * step) for up, down in moved]).T
         size = 1 + np.abs(matrix).max()
-        assert np.trace(matrix) == pytest.approx(sum(each.multipliers).real, abs=1e-5 * size)
+        assert np.trace(matrix) == pytest.approx(sum(orbit.multipliers).real, abs=1e-5 * size)
 
 
 def test_a_table_with_two_maxima_has_more_than_two_orbits():
     table = TABLES["two maxima"]
-    found = bb.orbits(bb.Rigid(0.9), amplitude=0.7, table=table)
+    orbits = bb.orbits(bb.Rigid(0.9), amplitude=0.7, table=table)
     C = np.pi * 0.1 / 1.9
     tau = np.linspace(0, 2 * np.pi, 100001)
     crossings = np.count_nonzero(np.diff(np.sign(0.7 * table(tau, 1) - C)) != 0)
     assert crossings > 2
-    slopes = [0.7 * table(each.phase, 1) for each in found]
-    assert slopes == pytest.approx(len(found) * [C], abs=1e-12)
-    assert 2 < len(found) <= crossings
+    slopes = [0.7 * table(orbit.phase, 1) for orbit in orbits]
+    assert slopes == pytest.approx(len(orbits) * [C], abs=1e-12)
+    assert 2 < len(orbits) <= crossings
 
 
 @pytest.mark.parametrize(
@@ -354,10 +360,10 @@ def test_a_table_with_two_maxima_has_more_than_two_orbits():
 )
 def test_limits_are_those_of_another_code(ball, table, doubling):
     """Numbers of a code from scratch, which follows single orbits."""
-    found = bb.limits(ball, table=table)
-    assert found.period_doubling.amplitude == pytest.approx(doubling, abs=1e-7)
-    assert found.period_doubling.multipliers.real.min() == pytest.approx(-1, abs=1e-9)
-    fold = found.saddle_node
+    limits = bb.limits(ball, table=table)
+    assert limits.period_doubling.amplitude == pytest.approx(doubling, abs=1e-7)
+    assert limits.period_doubling.multipliers.real.min() == pytest.approx(-1, abs=1e-9)
+    fold = limits.saddle_node
     if not ball.has_duration:
         assert fold.amplitude == pytest.approx(np.pi * 0.1 / 1.9 / table.slope, abs=1e-12)
     near = bb.orbit(ball, amplitude=1.01 * fold.amplitude, table=table)
@@ -368,9 +374,9 @@ def test_the_doubling_of_the_restitution_model_is_its_closed_form():
     """1 + tr + det = 0 where -ΛW″ = 2(1 + r²)/(1 + r)², at ΛW′ = C."""
     for r in (0.5, 0.8):
         table = TABLES["skewed"]
-        found = bb.limits(bb.Rigid(r), table=table).period_doubling
+        doubling = bb.limits(bb.Rigid(r), table=table).period_doubling
         rise = 2 * (1 + r * r) / (1 + r) ** 2
-        assert -found.amplitude * table(found.phase, 2) == pytest.approx(rise, abs=1e-10)
+        assert -doubling.amplitude * table(doubling.phase, 2) == pytest.approx(rise, abs=1e-10)
 
 
 def test_along_a_harmonic_and_its_phase_orbits_go_from_the_sine_to_other_tables():
@@ -394,9 +400,9 @@ def test_a_curve_of_doublings_along_a_harmonic_is_made_of_limits():
     doubling = bb.limits(bb.Rigid(0.7), table=table).period_doubling
     ranges = {"amplitude": (0.3, 2.0), "harmonic_2": (-0.1, 0.2)}
     curve = bb.special_curve(doubling, along=("amplitude", "harmonic_2"), ranges=ranges)
-    for each in curve.orbits[:: max(1, len(curve) // 4)]:
-        found = bb.limits(each.ball, table=each.table).period_doubling
-        assert found.amplitude == pytest.approx(each.amplitude, abs=1e-9)
+    for orbit in curve.orbits[:: max(1, len(curve) // 4)]:
+        limit = bb.limits(orbit.ball, table=orbit.table).period_doubling
+        assert limit.amplitude == pytest.approx(orbit.amplitude, abs=1e-9)
 
 
 def test_along_a_phase_one_turn_is_the_default():
@@ -426,14 +432,14 @@ def test_along_a_phase_one_turn_is_the_default():
 def test_a_locked_ball_leaves_at_a_lift_off_of_the_table():
     table = TABLES["two maxima"]
     amplitude = 1.3
-    found = bb.simulate(bb.Rigid(0.1), amplitude=amplitude, impacts=300, table=table)
-    rests = (found.contact_duration.values > 0) & (found.relative_bounce_velocity.values == 0)
+    impacts = bb.simulate(bb.Rigid(0.1), amplitude=amplitude, impacts=300, table=table)
+    rests = (impacts.contact_duration.values > 0) & (impacts.relative_bounce_velocity.values == 0)
     assert rests.any()
-    leaves = (found.impact_phase.values + found.contact_duration.values)[rests]
+    leaves = (impacts.impact_phase.values + impacts.contact_duration.values)[rests]
     np.testing.assert_allclose(1 + amplitude * table(leaves, 2), 0, atol=1e-10)
     motion = bb.motion_of(bb.Rigid(0.1), amplitude=amplitude, table=table)
     assert str(motion.kind.values) == "locked"
-    times = found.time.values[rests] + found.contact_duration.values[rests]
+    times = impacts.time.values[rests] + impacts.contact_duration.values[rests]
     turns = np.diff(times[-20:]) / (2 * np.pi)
     assert np.isclose(turns.cumsum(), int(motion.periods), atol=1e-9).any()
 
@@ -470,8 +476,8 @@ def test_the_error_law_is_of_second_order_on_any_table(name):
         exact = bb.exact_errors(ball, **given)
         law = bb.law_errors(ball, **given)
         corrected = bb.exact_errors(ball, **given, simple=bb.Corrected)
-        each = [[exact[q] - law[q], corrected[q]] for q in exact]
-        left.append(ratio**2 * np.array(each, float))
+        remainders = [[exact[q] - law[q], corrected[q]] for q in exact]
+        left.append(ratio**2 * np.array(remainders, float))
     assert np.abs(left[1]).max() < 3
     # What is left of them is of the order 1/ϖ.
     np.testing.assert_allclose(left[0], left[1], atol=0.03)
@@ -497,17 +503,17 @@ def test_an_orbit_says_of_a_table_what_is_not_said_by_its_amplitude():
 def test_limits_begin_next_to_the_steepest_phase(r, harmonic, doubling):
     """The branch turns back at two other saddle-nodes between its first one and the doubling."""
     table = Table([(1, 1.0, 0.0), harmonic])
-    found = bb.limits(bb.Rigid(r), table=table)
+    limits = bb.limits(bb.Rigid(r), table=table)
     line = np.pi * (1 - r) / (1 + r)
-    assert found.saddle_node.amplitude == pytest.approx(line / table.slope, rel=1e-10)
-    assert found.period_doubling.amplitude == pytest.approx(doubling, abs=1e-9)
-    branch = bb.follow(found.saddle_node, to=1.0)
-    folds = [each.amplitude for each in branch.special if each.kind == "saddle-node"]
+    assert limits.saddle_node.amplitude == pytest.approx(line / table.slope, rel=1e-10)
+    assert limits.period_doubling.amplitude == pytest.approx(doubling, abs=1e-9)
+    branch = bb.follow(limits.saddle_node, to=1.0)
+    folds = [special.amplitude for special in branch.special if special.kind == "saddle-node"]
     assert any(np.isclose(folds, line / table.next_low_slope, rtol=1e-3))
 
 
 @pytest.mark.parametrize("level", [0.0, 1e6])
 def test_harmonics_of_rounding_are_dropped(level):
     tau = 2 * np.pi * np.arange(10_000) / 10_000
-    found = Table.of_samples(level + np.sin(tau) + 0.1 * np.cos(3 * tau))
-    assert found.orders == (1, 3)
+    sampled_table = Table.of_samples(level + np.sin(tau) + 0.1 * np.cos(3 * tau))
+    assert sampled_table.orders == (1, 3)

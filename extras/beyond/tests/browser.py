@@ -145,6 +145,6 @@ def shown(frames: dict[str, Frame], folder: Path) -> dict[str, dict]:
     command += ["--allow-file-access-from-files", f"--user-data-dir={folder / 'profile'}"]
     command += ["--virtual-time-budget=1000", "--dump-dom", observer.as_uri()]
     run = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
-    found = re.search(r'<pre id="seen">(\{.*)</pre>', run.stdout, re.DOTALL)
-    assert found, run.stderr
-    return json.loads(html.unescape(found[1]))
+    match = re.search(r'<pre id="seen">(\{.*)</pre>', run.stdout, re.DOTALL)
+    assert match, run.stderr
+    return json.loads(html.unescape(match[1]))

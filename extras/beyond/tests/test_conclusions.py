@@ -76,9 +76,9 @@ def legend(one, to):
 
 def named(function, one, **given):
     """What errors, values and thresholds say of their orbits."""
-    found = function(one.contact, **one.given, **given)
-    found = found.get("max_height") if function is bb.error_thresholds else found
-    return str(found.unstable), str(found.inadmissible)
+    values = function(one.contact, **one.given, **given)
+    values = values.get("max_height") if function is bb.error_thresholds else values
+    return str(values.unstable), str(values.inadmissible)
 
 
 def of_shaker(name, amplitude):
@@ -105,9 +105,9 @@ TABLE = {
     ),
     "orbits": (
         (lambda one: bb.orbits(one.ball, **one.given), []),
-        (lambda one: [each.stable for each in bb.orbits(one.ball, **one.given)], [False] * 2),
+        (lambda one: [orbit.stable for orbit in bb.orbits(one.ball, **one.given)], [False] * 2),
         (
-            lambda one: sorted({each.speeds[0] for each in bb.orbits(one.ball, **one.given)}),
+            lambda one: sorted({orbit.speeds[0] for orbit in bb.orbits(one.ball, **one.given)}),
             SPEEDS[:2],
         ),
     ),
@@ -205,12 +205,12 @@ ENTRIES = [
 @pytest.mark.parametrize(("name", "which", "says", "must"), ENTRIES)
 def test_what_is_said_of_an_orbit(name, which, says, must):
     one = CASES[which]
-    found = says(one)
+    conclusion = says(one)
     if isinstance(must, str | bool) or (isinstance(must, tuple) and isinstance(must[-1], str)):
-        assert found == must
+        assert conclusion == must
     else:
-        assert np.shape(found) == np.shape(must)
-        np.testing.assert_allclose(found, must, atol=1e-5)
+        assert np.shape(conclusion) == np.shape(must)
+        np.testing.assert_allclose(conclusion, must, atol=1e-5)
 
 
 def test_the_table_has_each_public_function():
@@ -225,8 +225,8 @@ def test_a_contact_that_ends_earlier_is_named():
     ball = bb.SpringDamper(1.580803888063078, damping_ratio=0.25853365407092316, release="force")
     start = bb.orbit(ball, amplitude=2.5166920162308033, n=2)
     passed = bb.follow(start, along="frequency", to=0.92)
-    assert EARLIER in {each.obstacle for each in passed.orbits}
-    text = next(str(each) for each in passed.orbits if each.obstacle == EARLIER)
+    assert EARLIER in {orbit.obstacle for orbit in passed.orbits}
+    text = next(str(orbit) for orbit in passed.orbits if orbit.obstacle == EARLIER)
     assert f"no, {EARLIER}" in text
 
 
@@ -246,10 +246,10 @@ def test_on_shaker_names_other_closing_speeds():
     unit = G / (100 * np.pi)
     fit = bb.restitution_of(measured())
     rigid = bb.Rigid(lambda u: fit(u * unit))
-    every = {each.speeds[0] * unit for each in bb.orbits(rigid, amplitude=0.9)}
+    every = {orbit.speeds[0] * unit for orbit in bb.orbits(rigid, amplitude=0.9)}
     assert len(every) > 1 and len(answer.others) >= 1
     for speed in answer.others:
-        assert min(abs(speed - each) for each in every) < 1e-9
+        assert min(abs(speed - closing_speed) for closing_speed in every) < 1e-9
     assert re.search(r"Other orbits .* close at 0\.\d+.* they are not judged here", str(answer))
 
 
@@ -263,11 +263,11 @@ def test_a_ball_stays_on_what_is_called_stable(k):
     for low, high in bb.limits(ball, table=table).stable_ranges:
         for amplitude in np.linspace(low, high, 9)[1:-1]:
             near = [
-                each for each in bb.orbits(ball, amplitude=amplitude, table=table) if each.stable
+                orbit for orbit in bb.orbits(ball, amplitude=amplitude, table=table) if orbit.stable
             ]
             assert near
-            for each in near:
-                tau, u = each.times[0], each.speeds[0]
+            for orbit in near:
+                tau, u = orbit.times[0], orbit.speeds[0]
                 for turn in (1, 2):
                     tau, u, _ = leg(ball, amplitude, tau, u, tuple(table.harmonics))
-                    assert tau == pytest.approx(each.times[0] + 2 * np.pi * turn, abs=1e-6)
+                    assert tau == pytest.approx(orbit.times[0] + 2 * np.pi * turn, abs=1e-6)

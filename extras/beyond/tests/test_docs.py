@@ -36,7 +36,7 @@ def test_a_script_of_the_gallery_draws_its_picture(script, monkeypatch, tmp_path
     runpy.run_path(str(script))
     plt.close("all")
     drawn, shown = (
-        plt.imread(each.with_suffix(".png")) for each in (tmp_path / script.name, script)
+        plt.imread(file.with_suffix(".png")) for file in (tmp_path / script.name, script)
     )
     assert drawn.shape == shown.shape
 
@@ -53,7 +53,7 @@ def imported(module):
     """The first names of the modules that a file imports, also within functions."""
     for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from (each.name.partition(".")[0] for each in node.names)
+            yield from (alias.name.partition(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             yield node.module.partition(".")[0]
 
@@ -63,14 +63,14 @@ def test_the_installation_of_the_readme_has_what_all_modules_import():
     readme = (BEYOND / "README.md").read_text(encoding="utf-8")
     extras = re.search(r"^pip install .*beyond\[([\w,]+)\]", readme, re.MULTILINE)[1].split(",")
     optional = project["optional-dependencies"]
-    needed = sum((optional[each] for each in extras), project["dependencies"])
+    needed = sum((optional[extra] for extra in extras), project["dependencies"])
     # The replication has several packages, and an extra for figures.
     root = BEYOND.parents[1]
     replication = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert "bouncing-ball[figures]" in needed
     needed += replication["optional-dependencies"]["figures"]
-    installed = {re.match(r"[\w-]+", each)[0].replace("-", "_") for each in needed}
-    installed |= {each.name for each in (root / "src").iterdir()}
+    installed = {re.match(r"[\w-]+", requirement)[0].replace("-", "_") for requirement in needed}
+    installed |= {package.name for package in (root / "src").iterdir()}
     modules = (BEYOND / "src" / "bouncing_ball_beyond").rglob("*.py")
     names = {name for module in modules for name in imported(module)}
     assert names - sys.stdlib_module_names - {"bouncing_ball_beyond"} <= installed
@@ -79,9 +79,9 @@ def test_the_installation_of_the_readme_has_what_all_modules_import():
 def test_a_folder_of_the_library_imports_only_from_those_before_it():
     library = BEYOND / "src" / "bouncing_ball_beyond"
     folders = ("tables", "contacts", "motions", "periodic", "errors", "output")
-    assert {each.parent.name for each in library.glob("*/*.py")} == {*folders}
+    assert {module.parent.name for module in library.glob("*/*.py")} == {*folders}
     for i, folder in enumerate(folders):
-        texts = [each.read_text(encoding="utf-8") for each in (library / folder).glob("*.py")]
+        texts = [module.read_text(encoding="utf-8") for module in (library / folder).glob("*.py")]
         used = {
             name for text in texts for name in re.findall(r"^from \w+_beyond\.(\w+)", text, re.M)
         }

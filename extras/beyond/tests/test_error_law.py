@@ -69,16 +69,16 @@ def test_thresholds_of_the_replication(n, r, amplitude, release):
     names = {name: name for name in QUANTITIES} | {"phase": "phase_in_periods"}
     errors = replication.errors([*names.values()], n, r, amplitude, grid, release)
     known = {"amplitude": amplitude, "n": n, "low": 3, "high": 1e5}
-    found = error_thresholds(ball, **known)
+    thresholds = error_thresholds(ball, **known)
     for name in QUANTITIES:
         other = replication.threshold(grid, errors[names[name]], 0.01)
         if other.status == "first orbit":
             # The replication leaves out unstable orbits, which are compared here.
-            assert not found[name].ratio > other.ratio
+            assert not thresholds[name].ratio > other.ratio
             continue
-        assert found[name].status == other.status
+        assert thresholds[name].status == other.status
         # Both root finders stop at rounding, which is 1e-16 of values whose errors are 0.01.
-        assert found[name].ratio == pytest.approx(other.ratio, rel=1e-11, nan_ok=True)
+        assert thresholds[name].ratio == pytest.approx(other.ratio, rel=1e-11, nan_ok=True)
 
 
 def test_remainder_is_of_second_order():
@@ -159,13 +159,13 @@ def test_law_thresholds_of_height_solve_the_quadratic_of_the_article():
     amplitude[::2] = np.pi * (1 - r[::2]) / (1 + r[::2]) * (1 + 10 ** rng.uniform(-6, -1, 100))
     unit = SpringDamper(1.0, restitution=r)
     impact = free_impact(unit)
-    found = law_thresholds(unit, amplitude=amplitude, tolerance=0.01)
+    thresholds = law_thresholds(unit, amplitude=amplitude, tolerance=0.01)
     line = impact.speed - np.pi
     shift = impact.load / (1 + r)
     rise = np.sqrt(amplitude**2 - line**2)
     height = rise + np.pi**2 / 2
     deeper = shift * line + impact.speed * impact.centroid
-    u = 1 / found["max_height"]
+    u = 1 / thresholds["max_height"]
     defects = [
         (rise + error * height + deeper * u) ** 2 + (line - shift * u) ** 2 - amplitude**2
         for error in (-0.01, 0.01)
@@ -176,7 +176,7 @@ def test_law_thresholds_of_height_solve_the_quadratic_of_the_article():
     for factor in np.geomspace(1 + 1e-9, 1e5, 60):
         for name in ("max_height", "phase"):
             law = law_errors(
-                SpringDamper(found[name] * factor, restitution=r), amplitude=amplitude
+                SpringDamper(thresholds[name] * factor, restitution=r), amplitude=amplitude
             )[name]
             assert np.abs(law).max() <= 0.01
 
@@ -290,10 +290,12 @@ def test_law_of_other_contacts_is_of_second_order(name):
         assert through == pytest.approx(0.02 / ratio, rel=1e-9)
         by_law = law_errors(impact, amplitude=0.9)
         exact = exact_errors(ball, amplitude=0.9)
-        remainders.append({each: exact[each] - by_law[each] for each in QUANTITIES})
-    for each in QUANTITIES:
+        remainders.append({quantity: exact[quantity] - by_law[quantity] for quantity in QUANTITIES})
+    for quantity in QUANTITIES:
         # Terms of third order are some per cent of those of second order.
-        assert remainders[0][each] / remainders[1][each] == pytest.approx(4, rel=0.08), each
+        assert remainders[0][quantity] / remainders[1][quantity] == pytest.approx(4, rel=0.08), (
+            quantity
+        )
 
 
 def test_constant_restitution_misses_the_doubling():
@@ -311,9 +313,11 @@ def test_thresholds_of_a_law_are_by_its_duration():
     """For 1 % of the height the article has 81.23 for π/(D + κ) on this contact."""
     law = LAWS["hunt_crossley"]
     known = {"amplitude": 1.0, "quantities": ["max_height"], "low": 10, "high": 1000, "samples": 9}
-    found = error_thresholds(law, **known)["max_height"]
-    assert found.ratio == pytest.approx(81.23, abs=5e-3)
-    assert law_thresholds(law, amplitude=1.0)["max_height"] == pytest.approx(found.ratio, rel=1e-3)
+    threshold = error_thresholds(law, **known)["max_height"]
+    assert threshold.ratio == pytest.approx(81.23, abs=5e-3)
+    assert law_thresholds(law, amplitude=1.0)["max_height"] == pytest.approx(
+        threshold.ratio, rel=1e-3
+    )
 
 
 @pytest.mark.parametrize("name", ["linear", *LAWS])
@@ -363,9 +367,9 @@ def test_a_ball_that_leaves_slowly_has_the_values_of_its_orbit():
     ball = SpringDamper(50.0, 0.1)
     known = orbit(ball, amplitude=2.8)
     assert known.relative_bounce_velocity < 1
-    found = contact_values(ball, amplitude=2.8, quantities=["max_height", "phase"])
-    assert found["max_height"] == pytest.approx(known.max_height, rel=1e-12)
-    assert found["phase"] == pytest.approx(known.phase, rel=1e-12)
+    values = contact_values(ball, amplitude=2.8, quantities=["max_height", "phase"])
+    assert values["max_height"] == pytest.approx(known.max_height, rel=1e-12)
+    assert values["phase"] == pytest.approx(known.phase, rel=1e-12)
 
 
 SKEWED = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
@@ -379,18 +383,21 @@ def test_errors_at_the_saddle_node_of_the_restitution_model_are_those_next_to_it
     node = np.pi * (1 - r) / (1 + r) / table.slope
     amplitude = node * (1 + np.array([-1e-16, 0.0, 1e-16, 1e-15, 1e-12, 1e-10]))
     for errors in (law_errors, exact_errors):
-        found = errors(ball, amplitude=amplitude, table=table)
+        at_node = errors(ball, amplitude=amplitude, table=table)
         next_to_it = errors(ball, amplitude=node * (1 + 1e-9), table=table)
         for name in QUANTITIES:
-            np.testing.assert_allclose(found[name], next_to_it[name], atol=1e-4, err_msg=name)
+            np.testing.assert_allclose(at_node[name], next_to_it[name], atol=1e-4, err_msg=name)
 
 
 def test_orbits_at_their_saddle_node_are_found_on_both_sides():
     """By their closed form: the phase is zero, and the height that of a flight of 2π."""
     node = np.pi * 0.35 / 1.65
     for side in ("stable", "unstable"):
-        found = orbit(Rigid(0.65), amplitude=node, side=side)
-        assert found.phase == pytest.approx(0, abs=1e-6)
-        assert np.abs(found.equations.linearized(found.z[np.newaxis]).legs).max() < 1e-14
+        periodic_orbit = orbit(Rigid(0.65), amplitude=node, side=side)
+        assert periodic_orbit.phase == pytest.approx(0, abs=1e-6)
+        assert (
+            np.abs(periodic_orbit.equations.linearized(periodic_orbit.z[np.newaxis]).legs).max()
+            < 1e-14
+        )
     values = contact_values(Rigid(0.65), amplitude=node)
     assert values["max_height"] == pytest.approx(np.pi**2 / 2, abs=1e-6)

@@ -78,16 +78,16 @@ def seen(made, tmp_path_factory):
 
 @pytest.mark.parametrize(("screen", "address", "_"), VIEWS)
 def test_the_first_view_has_the_picture_the_answer_and_an_input(seen, screen, address, _):
-    found = seen[f"{screen} {address}"]
+    view = seen[f"{screen} {address}"]
     width, height = SCREENS[screen]
-    assert found["curves"] >= 2
-    assert found["scrolled"] == 0
-    assert 0 < found["top"]
-    assert found["wide"] <= width
-    assert max(found["ends"]) <= height
-    assert found["letters"] >= SMALLEST
-    assert found["outside"] == []
-    assert not found["crossed"]
+    assert view["curves"] >= 2
+    assert view["scrolled"] == 0
+    assert 0 < view["top"]
+    assert view["wide"] <= width
+    assert max(view["ends"]) <= height
+    assert view["letters"] >= SMALLEST
+    assert view["outside"] == []
+    assert not view["crossed"]
 
 
 @pytest.mark.parametrize("screen", SCREENS)
@@ -111,8 +111,8 @@ def test_the_self_check_passes(seen, screen):
 
 def test_the_call_computes_what_the_page_shows(seen):
     names = {name: getattr(bouncing_ball_beyond, name) for name in bouncing_ball_beyond.__all__}
-    found = eval(seen["desk #r=0.65&w=6&a=1"]["call"], names)
-    assert f"{found.max_height:.4g}" in seen["desk #r=0.65&w=6&a=1"]["verdict"]
+    orbit = eval(seen["desk #r=0.65&w=6&a=1"]["call"], names)
+    assert f"{orbit.max_height:.4g}" in seen["desk #r=0.65&w=6&a=1"]["verdict"]
     for call in seen[f"desk {LOOSE}"]["call"].splitlines():
         impacts = int(eval(call, names).impacts)
         assert f"with {impacts} impacts" in seen[f"desk {LOOSE}"]["verdict"]
@@ -130,12 +130,12 @@ def test_a_number_is_read_with_its_unit(seen):
 
 
 def test_what_a_switch_fills_in_is_rounded(seen):
-    found = seen[f"telephone {README}"]["switched"]
+    inputs = seen[f"telephone {README}"]["switched"]
     table = 2 * math.pi * 15
     # A free impact whose contact ends with its force, and takes 0.3 ms, with a ball of 20 g.
     ratio = contact_of_duration(table * 0.3e-3, 0.65, "force").frequency_ratio
     wanted = [1.1e-3 * table**2 / 9.80665, 0.02 * (table * ratio) ** 2]
-    assert found == [f"{float(f'{value:.6g}'):.15g}" for value in wanted]
+    assert inputs == [f"{float(f'{value:.6g}'):.15g}" for value in wanted]
 
 
 @pytest.mark.parametrize("address", ["#tab=design", STIFF])
@@ -200,7 +200,7 @@ def test_the_page_begins_with_a_guess(made, tmp_path):
     )["max_height"].ratio
     inputs = visible("input", "one.id")
     shows = said("verdict")
-    found = asked(
+    answers = asked(
         made,
         tmp_path,
         "view.explorer.show('')",
@@ -211,7 +211,7 @@ def test_the_page_begins_with_a_guess(made, tmp_path):
         *(pressed("#there"), shows),
         "page.getElementById('all-numbers').hash",
     )
-    given = [one for one in found if one is not None]
+    given = [one for one in answers if one is not None]
     assert given[:2] == [["stiff", "slide-stiff"], ""]
     assert "have not been thrown" in given[2]
     assert given[3].startswith(f"No: at ϖ = 5 the ball on the spring flies {lower[0]}")
@@ -244,14 +244,14 @@ def test_a_scene_is_marked_and_leads_to_the_next(made, tmp_path):
     names = [f"#scene={name}" for name in SCENES]
     first = f"view.explorer.show('{names[0]}')"
     steps = [step for _ in names for step in (marked, follow)]
-    found = asked(made, tmp_path, first, *steps, "view.explorer.hash()")
-    assert found[1::2] == [[name] for name in names] + [found[-1]]
-    assert found[-1].startswith("#tab=design")
+    answers = asked(made, tmp_path, first, *steps, "view.explorer.hash()")
+    assert answers[1::2] == [[name] for name in names] + [answers[-1]]
+    assert answers[-1].startswith("#tab=design")
 
 
 def test_the_focus_stays_on_the_button_that_was_pressed(made, tmp_path):
     button = "[...page.querySelectorAll('#others button')].find(one => one.textContent === 'n = 2')"
-    found = asked(
+    answers = asked(
         made,
         tmp_path,
         f"{button}.focus()",
@@ -260,8 +260,8 @@ def test_the_focus_stays_on_the_button_that_was_pressed(made, tmp_path):
         "view.explorer.hash()",
         address="#tab=design",
     )
-    assert found[2] == "n = 2"
-    assert "&n=2" in found[3]
+    assert answers[2] == "n = 2"
+    assert "&n=2" in answers[3]
 
 
 @pytest.mark.parametrize(
@@ -269,21 +269,23 @@ def test_the_focus_stays_on_the_button_that_was_pressed(made, tmp_path):
     [("1,500", "1500 or 1.5"), ("−1,500", "−1500 or -1.5"), ("1,234.5", "1234.5")],
 )
 def test_a_number_with_commas_is_refused_with_what_to_write(made, tmp_path, text, ways):
-    found = asked(made, tmp_path, typed("f", text), said("refused"), address="#tab=design")
-    assert found[1] == f"frequency of the table [Hz]: instead of {text} write {ways}."
+    answers = asked(made, tmp_path, typed("f", text), said("refused"), address="#tab=design")
+    assert answers[1] == f"frequency of the table [Hz]: instead of {text} write {ways}."
 
 
 def test_the_sign_of_a_text_is_a_minus(made, tmp_path):
-    found = asked(made, tmp_path, typed("v", "−2.5"), "view.explorer.hash()", address="#scene=rest")
-    assert "&v=-2.5&" in found[1]
+    answers = asked(
+        made, tmp_path, typed("v", "−2.5"), "view.explorer.hash()", address="#scene=rest"
+    )
+    assert "&v=-2.5&" in answers[1]
 
 
 @pytest.mark.parametrize("address", ["", "#tab=design", "#tab=orbit&r=0.65", "#scene=locked"])
 def test_targets_on_a_telephone_are_large_enough(made, tmp_path, address):
     targets = "a, button, summary, select, input:not([type=radio]), label:has(input)"
     heights = visible(targets, "[one.getBoundingClientRect().height, one.outerHTML]")
-    found = asked(made, tmp_path, heights, address=address)[0]
-    assert [text for height, text in found if height < 24] == []
+    measurements = asked(made, tmp_path, heights, address=address)[0]
+    assert [text for height, text in measurements if height < 24] == []
 
 
 def test_the_scenes_of_the_lesson_are_on_the_page(made):

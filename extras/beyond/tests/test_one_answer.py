@@ -90,8 +90,8 @@ def balls():
         low, high = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
         if isinstance(place, str):
             end = low if place == "saddle-node" else high
-            found = bifurcations(n, place, Contact.of_restitution(ratio, r, release))[0]
-            amplitude = (end + np.nan_to_num(found.item())) / 2
+            bifurcation = bifurcations(n, place, Contact.of_restitution(ratio, r, release))[0]
+            amplitude = (end + np.nan_to_num(bifurcation.item())) / 2
         else:
             amplitude = low + place * (high - low)
         # An elastic ball has orbits from Λ = 0.
@@ -163,21 +163,21 @@ def by_errors(ball):
     simple = restitution.saddle_node(ball.n, ball.r), restitution.period_doubling(ball.n, ball.r)
     if ball.r == 1:
         ends[0] = 0.0
-    states = [state(ball.amplitude, *each) for each in (simple, ends)]
+    states = [state(ball.amplitude, *interval) for interval in (simple, ends)]
     names = {name: name for name in MEASURES} | {"phase": "phase_in_periods"}
     given = (ball.n, ball.r, ball.amplitude, np.array([ratio]), ball.release)
-    found = {"frequency_ratio": ratio}
-    found |= {f"restitution {end}": value for end, value in zip(ENDS, simple, strict=True)}
-    found |= {f"contact {end}": value for end, value in zip(ENDS, ends, strict=True)}
+    quantities = {"frequency_ratio": ratio}
+    quantities |= {f"restitution {end}": value for end, value in zip(ENDS, simple, strict=True)}
+    quantities |= {f"contact {end}": value for end, value in zip(ENDS, ends, strict=True)}
     height = np.nan
     if states == ["stable", "stable"]:
         values = errors([*names.values()], *given)
-        found |= {f"size {name}": values[names[name]].values.item() for name in MEASURES}
-        height = found["size max_height"]
+        quantities |= {f"size {name}": values[names[name]].values.item() for name in MEASURES}
+        height = quantities["size max_height"]
     else:
         with pytest.raises(NoOrbit, match="orbits of the restitution model need"):
             errors(["max_height"], *given)
-    return found | {"verdict": verdict(states, height)}
+    return quantities | {"verdict": verdict(states, height)}
 
 
 def by_shaker(ball):
@@ -190,39 +190,41 @@ def by_shaker(ball):
     given = {"frequency": ball.frequency, "restitution": ball.r, "n": ball.n}
     answer = on_shaker(**given, **table, **contact, release=ball.release)
     words = {True: "good", False: "not good"}[answer.is_good_enough]
-    found = {"amplitude": answer.amplitude, "frequency_ratio": answer.ball.frequency_ratio}
+    quantities = {"amplitude": answer.amplitude, "frequency_ratio": answer.ball.frequency_ratio}
     for end in ENDS:
         value = getattr(answer, end)
-        found |= {f"restitution {end}": value.by_restitution, f"contact {end}": value.exact}
+        quantities |= {f"restitution {end}": value.by_restitution, f"contact {end}": value.exact}
     if answer.stable:
-        found["error max_height"] = answer.error
+        quantities["error max_height"] = answer.error
     assert ("marginally stable" in str(answer)) == (answer.stable and ball.r == 1)
-    return found | {"verdict": "no answer" if "has no answer" in str(answer) else words}
+    return quantities | {"verdict": "no answer" if "has no answer" in str(answer) else words}
 
 
 def by_orbit(ball):
     """The orbits of this package, on the contact and with the restitution coefficient."""
     contact = SpringDamper(ball.ratio, restitution=ball.r, release=ball.release)
     of = {"contact": contact, "restitution": Rigid(ball.r)}
-    found, orbits, states = {"frequency_ratio": ball.ratio}, {}, []
-    for name, each in of.items():
-        ends = limits(each, n=ball.n)
+    quantities, orbits, states = {"frequency_ratio": ball.ratio}, {}, []
+    for name, package_ball in of.items():
+        ends = limits(package_ball, n=ball.n)
         for end in ENDS:
             value = getattr(ends, end)
-            found[f"{name} {end}"] = getattr(value, "amplitude", np.nan)
+            quantities[f"{name} {end}"] = getattr(value, "amplitude", np.nan)
         if ball.r == 1:
-            found[f"{name} saddle_node"] = 0.0
+            quantities[f"{name} saddle_node"] = 0.0
         try:
-            orbits[name] = orbit(each, amplitude=ball.amplitude, n=ball.n)
+            orbits[name] = orbit(package_ball, amplitude=ball.amplitude, n=ball.n)
         except OrbitNotFound:
             states.append("below")
             continue
         states.append("stable" if orbits[name].stable else "doubled")
     if states == ["stable", "stable"]:
         for name in MEASURES:
-            exact, simple = (float(np.ravel(getattr(orbits[each], name))[0]) for each in of)
-            found[f"error {name}"] = (exact - simple) / (2 * np.pi if name == "phase" else simple)
-    return found | {"verdict": verdict(states, found.get("error max_height", np.nan))}
+            exact, simple = (float(np.ravel(getattr(orbits[model], name))[0]) for model in of)
+            quantities[f"error {name}"] = (exact - simple) / (
+                2 * np.pi if name == "phase" else simple
+            )
+    return quantities | {"verdict": verdict(states, quantities.get("error max_height", np.nan))}
 
 
 def address(ball):
@@ -254,36 +256,42 @@ HEADLINES = {
 def by_explorer(seen, n):
     values = seen["values"]
     words = [name for start, name in HEADLINES.items() if seen["verdict"].startswith(start)]
-    found = {name: values[name] for name in ("amplitude", "frequency_ratio")}
+    quantities = {name: values[name] for name in ("amplitude", "frequency_ratio")}
     for model, column in (("restitution", "restitution"), ("contact", "spring-damper")):
-        found |= {f"{model} {end}": float(values[f"{column} {end}"]) for end in ENDS}
+        quantities |= {f"{model} {end}": float(values[f"{column} {end}"]) for end in ENDS}
     states = {values[f"{column} state"] for column in ("restitution", "spring-damper")}
     if states <= {"stable", "marginally stable"}:
-        found |= {f"error {name}": float(values[f"errors {name}"]) for name in MEASURES}
+        quantities |= {f"error {name}": float(values[f"errors {name}"]) for name in MEASURES}
     numbers = {int(name.removeprefix("n = ")) for name in seen["others"]}
     if values["restitution state"] in ("stable", "marginally stable"):
         numbers.add(n)
-    found["numbers"] = " ".join(map(str, sorted(numbers)))
-    return found | {"verdict": words[0] if words else seen["verdict"] or seen["refused"]}
+    quantities["numbers"] = " ".join(map(str, sorted(numbers)))
+    return quantities | {"verdict": words[0] if words else seen["verdict"] or seen["refused"]}
 
 
 def differences(answers):
     """Quantities in which places differ, with the value in each place that has one."""
-    found = {}
+    disagreements = {}
     for name in set().union(*answers.values()):
-        values = {place: each[name] for place, each in answers.items() if name in each}
+        values = {
+            place: quantities[name] for place, quantities in answers.items() if name in quantities
+        }
         kind, _, what = name.partition(" ")
         if kind == "rough":
             values["errors"] = answers["errors"][what]
         if kind == "size":
             signed = f"error {what}"
-            values |= {at: abs(each[signed]) for at, each in answers.items() if signed in each}
+            values |= {
+                at: abs(quantities[signed])
+                for at, quantities in answers.items()
+                if signed in quantities
+            }
         first, *others = values.values()
         limit = {"rel": ROUGH if kind == "rough" else EXACT, "abs": EXACT, "nan_ok": True}
         expected = first if isinstance(first, str) else pytest.approx(first, **limit)
-        if any(each != expected for each in others):
-            found[name] = values
-    return found
+        if any(other != expected for other in others):
+            disagreements[name] = values
+    return disagreements
 
 
 @pytest.mark.parametrize("k", range(len(BALLS)))

@@ -119,8 +119,8 @@ def test_a_case_is_the_same_on_all_tabs(seen):
             if name.startswith("no contact") and release == "force":
                 assert "e⁻²" in answer["refused"]
                 continue
-            found = [float(state[key]) for key in ("w", "a")]
-            assert found == pytest.approx(CASES[name][1:], rel=FILLED_IN if k else READ), address
+            values = [float(state[key]) for key in ("w", "a")]
+            assert values == pytest.approx(CASES[name][1:], rel=FILLED_IN if k else READ), address
             if state["tab"] == "stage":
                 unused = f"Left out: n = {n} (not used here)." if n > 1 else ""
                 assert answer["refused"] == unused
@@ -137,10 +137,10 @@ def test_each_tab_has_the_motions_of_the_package(seen):
     for answer in itertools.chain(*seen):
         if state_of(answer)["tab"] == "stage" and answer["verdict"]:
             for motion, call in zip(answer["motions"], answer["call"].splitlines(), strict=True):
-                found = called(call)
-                counts = found.periods.item(), found.impacts.item()
+                package_motion = called(call)
+                counts = package_motion.periods.item(), package_motion.impacts.item()
                 assert counts == (motion["periods"], motion["impacts"])
-                assert found.kind.item() == KINDS.get(motion["kind"], "chaotic")
+                assert package_motion.kind.item() == KINDS.get(motion["kind"], "chaotic")
 
 
 def test_each_tab_has_the_orbits_of_the_package(seen):
@@ -148,15 +148,15 @@ def test_each_tab_has_the_orbits_of_the_package(seen):
     for answer in itertools.chain(*seen):
         if state_of(answer)["tab"] != "orbit" or not answer["verdict"]:
             continue
-        found, values = called(answer["call"]), answer["values"]
-        if isinstance(found, OrbitNotFound):
+        orbit, values = called(answer["call"]), answer["values"]
+        if isinstance(orbit, OrbitNotFound):
             assert values["spring-damper state"] == "below the saddle-node"
         elif values["spring-damper state"] == "below the saddle-node":
             n = int(state_of(answer)["n"])
-            assert found.amplitude < limits(found.ball, n=n).saddle_node.amplitude
+            assert orbit.amplitude < limits(orbit.ball, n=n).saddle_node.amplitude
         else:
             shows = [values[f"spring-damper {name}"] for name in OBSERVED]
-            computed = [np.ravel(getattr(found, name))[0] for name in OBSERVED]
+            computed = [np.ravel(getattr(orbit, name))[0] for name in OBSERVED]
             assert shows == pytest.approx(computed, rel=EXACT, abs=EXACT)
 
 
@@ -183,16 +183,16 @@ def test_the_explorer_refuses_where_python_refuses(tmp_path):
     answers = shown({"all": Frame(text, cases=addresses)}, tmp_path)["all"]["cases"]
     seen = set()
     for answer in answers:
-        found, values = called(answer["call"]), answer["values"]
+        orbit, values = called(answer["call"]), answer["values"]
         kinds = {"below the saddle-node", "no orbit"}
-        if not isinstance(found, OrbitNotFound):
-            kinds = {"unstable" if found.admissible else "no ball follows it"}
+        if not isinstance(orbit, OrbitNotFound):
+            kinds = {"unstable" if orbit.admissible else "no ball follows it"}
             shows = [values[f"spring-damper {name}"] for name in OBSERVED]
-            computed = [np.ravel(getattr(found, name))[0] for name in OBSERVED]
+            computed = [np.ravel(getattr(orbit, name))[0] for name in OBSERVED]
             assert shows == pytest.approx(computed, rel=EXACT, abs=EXACT)
         state, _, why = values["spring-damper state"].partition(": ")
         assert state in kinds, answer["call"]
-        assert why == getattr(found, "obstacle", "")
+        assert why == getattr(orbit, "obstacle", "")
         assert answer["verdict"].startswith("No verdict: no ball stays on the ")
         seen.add(state)
     assert {"below the saddle-node", "unstable", "no ball follows it"} <= seen
@@ -203,9 +203,9 @@ def test_an_orbit_below_the_table_is_not_called_stable(tmp_path):
     address = "#tab=orbit&r=0.01&w=1000&a=3.0805&release=displacement"
     text = page(read(Path(__file__).resolve().parents[1] / "figures/explorer.nc"))
     (answer,) = shown({"low": Frame(text, cases=(address,))}, tmp_path)["low"]["cases"]
-    found = called(answer["call"])
-    assert found.obstacle == "a flight passes below the table"
-    assert answer["values"]["spring-damper state"] == f"no ball follows it: {found.obstacle}"
+    orbit = called(answer["call"])
+    assert orbit.obstacle == "a flight passes below the table"
+    assert answer["values"]["spring-damper state"] == f"no ball follows it: {orbit.obstacle}"
     assert answer["verdict"].startswith("No verdict: no ball stays on the 1-T orbit")
     assert np.isnan(float(answer["values"]["errors max_height"]))
 
@@ -218,9 +218,9 @@ def test_the_physical_tab_says_what_on_shaker_says(seen):
         n, r = int(state["n"]), float(state["r"])
         speed = free_impact(Rigid(r), n).speed.item() * GRAVITY / RATE
         assert f"= {speed:.3g} m/s on the {n}-T orbit" in answer["speed"]
-        found = called(answer["call"])
-        if isinstance(found, ValueError):
-            assert "is not found" in str(found)
+        shaker_answer = called(answer["call"])
+        if isinstance(shaker_answer, ValueError):
+            assert "is not found" in str(shaker_answer)
             assert "NaN" in (
                 values["spring-damper saddle_node"],
                 values["spring-damper period_doubling"],
@@ -228,10 +228,12 @@ def test_the_physical_tab_says_what_on_shaker_says(seen):
             continue
         for end in ("saddle_node", "period_doubling"):
             shows = [float(values[f"{model} {end}"]) for model in ("restitution", "spring-damper")]
-            assert shows == pytest.approx(getattr(found, end)[:2], rel=EXACT, abs=EXACT)
-        if found.stable:
-            assert values["errors max_height"] == pytest.approx(found.error, rel=EXACT, abs=EXACT)
+            assert shows == pytest.approx(getattr(shaker_answer, end)[:2], rel=EXACT, abs=EXACT)
+        if shaker_answer.stable:
+            assert values["errors max_height"] == pytest.approx(
+                shaker_answer.error, rel=EXACT, abs=EXACT
+            )
             sentence = re.search(
                 r"maximum height is .*? the tolerance of [\d.]+%", answer["verdict"]
             )
-            assert sentence[0] in str(found)
+            assert sentence[0] in str(shaker_answer)

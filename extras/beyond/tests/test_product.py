@@ -170,10 +170,10 @@ class Pair:
     @cached_property
     def motion(self):
         """Times and closing speeds of the thrown ball, by the integrator."""
-        found = [np.array([1.0, self.height(1.0, 1) + np.pi])]
+        impacts = [np.array([1.0, self.height(1.0, 1) + np.pi])]
         for _ in range(10):
-            found.append(self.leg(*found[-1]))
-        return np.array(found)
+            impacts.append(self.leg(*impacts[-1]))
+        return np.array(impacts)
 
     def free(self, speed):
         """r, D, t_c and σ of a free impact."""
@@ -221,8 +221,8 @@ PAIRS = {(ball, table): Pair(ball, table) for ball in KINDS for table in TABLES}
 # Truths
 
 
-def assert_close(found, expected, tolerance=CLOSE):
-    np.testing.assert_allclose(np.ravel(found), np.ravel(expected), 0, tolerance)
+def assert_close(actual, expected, tolerance=CLOSE):
+    np.testing.assert_allclose(np.ravel(actual), np.ravel(expected), 0, tolerance)
 
 
 def closes(orbit):
@@ -267,8 +267,8 @@ def question(function):
 
 @question
 def signature(pair):
-    found = np.array(np.broadcast_arrays(*pair.ball.signature(3.0)))
-    assert_close(found, pair.free(3.0))
+    signature = np.array(np.broadcast_arrays(*pair.ball.signature(3.0)))
+    assert_close(signature, pair.free(3.0))
 
 
 @question
@@ -276,12 +276,12 @@ def contact(pair):
     """The first release after an impact of a table that moves."""
     given = {"amplitude": pair.amplitude, "table": pair.table}
     T = pair.ball.first_release(1.0, 2.5, **given)
-    found = pair.ball.contact(1.0, 2.5, T, **given)
+    impact = pair.ball.contact(1.0, 2.5, T, **given)
     if pair.ball.has_duration:
         end, *state, _ = touching(pair.ball, pair.amplitude, 1.0, 2.5, pair.harmonics)
     else:
         end, state = 1.0, instant(pair.ball, pair.amplitude, 1.0, 2.5, pair.harmonics)[:2]
-    assert_close([1.0 + found.duration, found.gap, found.speed], [end, *state])
+    assert_close([1.0 + impact.duration, impact.gap, impact.speed], [end, *state])
 
 
 @question
@@ -290,29 +290,29 @@ def orbit(pair):
     trace, determinant = pair.multiplied
     assert_close(pair.orbit.trace_and_determinant, (trace, determinant), NEAR)
     assert pair.orbit.stable == (abs(trace) < 1 + determinant)
-    found = bb.orbit(pair.ball, side="unstable", **pair.given)
-    closes(found)
-    trace, determinant = trace_and_determinant(found)
-    assert trace > 1 + determinant and not found.stable
+    unstable = bb.orbit(pair.ball, side="unstable", **pair.given)
+    closes(unstable)
+    trace, determinant = trace_and_determinant(unstable)
+    assert trace > 1 + determinant and not unstable.stable
 
 
 @question
 def orbits(pair):
     """The restitution model has two orbits: its W′ is large enough once in a period."""
-    found = bb.orbits(pair.ball, **pair.given)
+    orbits = bb.orbits(pair.ball, **pair.given)
     # A soft contact has a further orbit, on which the ball lies on the table for most of a period.
-    short = [each for each in found if each.contact_duration < np.pi]
-    assert sorted(each.stable for each in short) == [False, True]
-    for each in found:
-        closes(each)
+    short = [orbit for orbit in orbits if orbit.contact_duration < np.pi]
+    assert sorted(orbit.stable for orbit in short) == [False, True]
+    for orbit in orbits:
+        closes(orbit)
 
 
 @question
 def orbit_over_two_periods(pair):
-    amplitude = np.mean([each.amplitude for each in pair.wide_limits])
-    found = bb.orbit(pair.ball, n=2, amplitude=amplitude, table=pair.table)
-    assert found.periods == 2 and found.stable
-    closes(found)
+    amplitude = np.mean([limit.amplitude for limit in pair.wide_limits])
+    orbit = bb.orbit(pair.ball, n=2, amplitude=amplitude, table=pair.table)
+    assert orbit.periods == 2 and orbit.stable
+    closes(orbit)
 
 
 @question
@@ -372,8 +372,8 @@ def many_balls(pair):
     """Parameters that are arrays."""
     value = pair.orbit.parameters[pair.kind.along]
     row = pair.ball.at(**{pair.kind.along: np.array([value, 1.03 * value])})
-    for each in bb.follow(bb.orbit(row, **pair.given), to=1.02 * pair.amplitude):
-        closes(each.orbits[-1])
+    for branch in bb.follow(bb.orbit(row, **pair.given), to=1.02 * pair.amplitude):
+        closes(branch.orbits[-1])
 
 
 @question
@@ -394,7 +394,7 @@ def special_curve(pair):
     along = ("amplitude", name)
     curve = bb.special_curve(pair.limits.period_doubling, along=along, ranges=ranges)
     is_special(curve.orbits[-1], -1)
-    ends = [each.parameters[name] for each in (curve.orbits[0], curve.orbits[-1])]
+    ends = [orbit.parameters[name] for orbit in (curve.orbits[0], curve.orbits[-1])]
     assert_close(sorted(ends), ranges[name])
 
 
@@ -404,9 +404,9 @@ def normal_form(pair):
     form = bb.normal_form(pair.limits.period_doubling)
     change = 1e-4 * pair.amplitude
     doubling = pair.limits.period_doubling
-    found = bb.follow(doubling, to=doubling.amplitude + change).orbits[-1]
-    closes(found)
-    (one, other), (u, v) = found.times % PERIOD, found.speeds
+    orbit = bb.follow(doubling, to=doubling.amplitude + change).orbits[-1]
+    closes(orbit)
+    (one, other), (u, v) = orbit.times % PERIOD, orbit.speeds
     apart = np.hypot((one - other + np.pi) % PERIOD - np.pi, u - v)
     assert form.opens_upwards and form.supercritical
     assert_close(form.rate * change / form.coefficient / (apart / 2) ** 2, 1.0, 0.02)
@@ -440,36 +440,36 @@ def follow_a_grazing(pair):
     at = pair.grazing
     upwards = bb.grazing_form(at).opens_upwards
     to = at.amplitude * (1.002 if upwards else 0.998)
-    found = bb.follow(at, to=to, points=30).orbits[-1]
-    assert found.impacts == 2
-    closes(found)
+    orbit = bb.follow(at, to=to, points=30).orbits[-1]
+    assert orbit.impacts == 2
+    closes(orbit)
 
 
 @question
 def simulate(pair):
-    found = bb.simulate(pair.ball, impacts=8, **pair.thrown)
-    assert_close(found.time + 1.0, pair.motion[:8, 0])
-    assert_close(-found.relative_impact_velocity, pair.motion[:8, 1])
+    impacts = bb.simulate(pair.ball, impacts=8, **pair.thrown)
+    assert_close(impacts.time + 1.0, pair.motion[:8, 0])
+    assert_close(-impacts.relative_impact_velocity, pair.motion[:8, 1])
 
 
 @question
 def history(pair):
-    found = bb.history(pair.ball, periods=2.0, samples=9, **pair.thrown)
+    history = bb.history(pair.ball, periods=2.0, samples=9, **pair.thrown)
     start = pair.ball, pair.amplitude, *pair.motion[0]
-    assert_close(found.ball, heights(*start, 1.0 + found.time.values, pair.harmonics))
+    assert_close(history.ball, heights(*start, 1.0 + history.time.values, pair.harmonics))
 
 
 @question
 def drop(pair):
     given = {"height": 6.0, "phase": 1.0, "periods": 1.0, "samples": 19}
-    found = bb.drop(pair.ball, **given, **pair.given)
+    history = bb.drop(pair.ball, **given, **pair.given)
     tau, u, _ = pair.flight(1.0, 6.0 - pair.height(1.0), -pair.height(1.0, 1))
-    times = 1.0 + found.time.values
+    times = 1.0 + history.time.values
     expected = 6.0 - (times - 1.0) ** 2 / 2
     later = times >= tau
     start = pair.ball, pair.amplitude, tau, u
     expected[later] = heights(*start, times[later], pair.harmonics)
-    assert_close(found.ball, expected)
+    assert_close(history.ball, expected)
 
 
 def on_its_orbit(pair, phase, velocity, start):
@@ -482,9 +482,9 @@ def on_its_orbit(pair, phase, velocity, start):
 
 @question
 def motion_of(pair):
-    found = bb.motion_of(pair.ball, **pair.thrown)
-    assert (found.kind, found.impacts, found.periods) == ("periodic", 1, 1)
-    on_its_orbit(pair, float(found.end_phase), float(found.end_velocity), pair.motion[-1])
+    motion = bb.motion_of(pair.ball, **pair.thrown)
+    assert (motion.kind, motion.impacts, motion.periods) == ("periodic", 1, 1)
+    on_its_orbit(pair, float(motion.end_phase), float(motion.end_velocity), pair.motion[-1])
 
 
 @question
@@ -497,23 +497,23 @@ def permanent_contact(pair):
 @question
 def threshold_of_permanent_contact(pair):
     """The weakest grip of the steady motion is zero."""
-    found = bb.permanent_contact(pair.ball, table=pair.table)
+    threshold = bb.permanent_contact(pair.ball, table=pair.table)
     if pair.ball.has_duration:
-        assert_close(weakest_grip(pair.ball, found, pair.harmonics), 0.0)
+        assert_close(weakest_grip(pair.ball, threshold, pair.harmonics), 0.0)
     else:
         tau = np.linspace(0, PERIOD, 20_001)
-        assert_close(found * waveform(pair.harmonics, tau, 2).min(), -1.0)
+        assert_close(threshold * waveform(pair.harmonics, tau, 2).min(), -1.0)
 
 
 @question
 def basins(pair):
     speed = pair.motion[0, 1]
-    found = bb.basins(pair.ball, starts=1, relative_velocity_max=2 * speed, **pair.given)
-    assert found.kind.values.tolist() == ["periodic"] and found.share.item() == 1.0
+    basins = bb.basins(pair.ball, starts=1, relative_velocity_max=2 * speed, **pair.given)
+    assert basins.kind.values.tolist() == ["periodic"] and basins.share.item() == 1.0
     state = np.array([0.0, speed])
     for _ in range(10):
         state = pair.leg(*state)
-    on_its_orbit(pair, float(found.end_phase[0]), float(found.end_velocity[0]), state)
+    on_its_orbit(pair, float(basins.end_phase[0]), float(basins.end_velocity[0]), state)
 
 
 @question
@@ -521,8 +521,10 @@ def orbit_diagram(pair):
     """The second impact that is recorded follows the first, unless the ball rests in between."""
     amplitude = np.array([pair.amplitude])
     given = {"starts": 1, "samples": 2, "impacts": 25, "table": pair.table}
-    found = bb.orbit_diagram(pair.ball, amplitude=amplitude, **given).isel(amplitude=0)
-    ends = zip(found.kind.values, found.impact_phase.values, found.impact_speed.values, strict=True)
+    diagram = bb.orbit_diagram(pair.ball, amplitude=amplitude, **given).isel(amplitude=0)
+    ends = zip(
+        diagram.kind.values, diagram.impact_phase.values, diagram.impact_speed.values, strict=True
+    )
     for kind, phase, speed in ends:
         if kind == "permanent contact":
             assert np.isnan(phase).all()
@@ -533,11 +535,11 @@ def orbit_diagram(pair):
 
 @question
 def lyapunov(pair):
-    found = bb.lyapunov(pair.ball, **pair.thrown)
+    motion = bb.lyapunov(pair.ball, **pair.thrown)
     trace, determinant = pair.multiplied
     largest = abs(np.roots([1.0, -trace, determinant])).max()
-    assert_close(found.lyapunov_exponent, np.log(largest), 1e-4)
-    assert_close(found.exponent_sum, np.log(determinant), 1e-4)
+    assert_close(motion.lyapunov_exponent, np.log(largest), 1e-4)
+    assert_close(motion.exponent_sum, np.log(determinant), 1e-4)
 
 
 # The error of a restitution coefficient
@@ -545,36 +547,36 @@ def lyapunov(pair):
 
 @question
 def free_impact_of_an_orbit(pair):
-    found = bb.free_impact(pair.ball)
-    assert_close(found.speed, pair.simple[0])
-    values = np.ravel([found.restitution, found.duration, found.centroid, found.load])
+    impact = bb.free_impact(pair.ball)
+    assert_close(impact.speed, pair.simple[0])
+    values = np.ravel([impact.restitution, impact.duration, impact.centroid, impact.load])
     assert_close(values, pair.free(pair.simple[0]))
 
 
 @question
 def contact_values(pair):
-    found = bb.contact_values(pair.ball, **pair.given)
+    values = bb.contact_values(pair.ball, **pair.given)
     state = pair.orbit.times[0], pair.orbit.speeds[0]
     _, closing, highest = leg(pair.ball, pair.amplitude, *state, pair.harmonics)
     assert_close(closing, state[1])
-    assert_close(found["max_height"], highest)
-    assert_close(found["saddle_node"], pair.limits.saddle_node.amplitude)
-    assert_close(found["period_doubling"], pair.limits.period_doubling.amplitude)
+    assert_close(values["max_height"], highest)
+    assert_close(values["saddle_node"], pair.limits.saddle_node.amplitude)
+    assert_close(values["period_doubling"], pair.limits.period_doubling.amplitude)
     if pair.ball.has_duration:
         leaves, _, speed, _ = touching(pair.ball, pair.amplitude, *state, pair.harmonics)
-        assert_close(found["bounce_velocity"], speed + pair.height(leaves, 1))
-        assert_close(found["apparent_restitution"], speed / state[1])
+        assert_close(values["bounce_velocity"], speed + pair.height(leaves, 1))
+        assert_close(values["apparent_restitution"], speed / state[1])
 
 
 @question
 def exact_errors(pair):
     names = ["max_height", "bounce_velocity", "phase"]
-    found = bb.exact_errors(pair.ball, quantities=names, **pair.given)
+    errors = bb.exact_errors(pair.ball, quantities=names, **pair.given)
     values = bb.contact_values(pair.ball, quantities=names, **pair.given)
     _, _, phase, height = pair.simple
-    assert_close(found["max_height"], pair.orbit.max_height / height - 1)
-    assert_close(found["bounce_velocity"], values["bounce_velocity"] / np.pi - 1)
-    assert_close(found["phase"], (values["phase"] - phase) / (2 * np.pi))
+    assert_close(errors["max_height"], pair.orbit.max_height / height - 1)
+    assert_close(errors["bounce_velocity"], values["bounce_velocity"] / np.pi - 1)
+    assert_close(errors["phase"], (values["phase"] - phase) / (2 * np.pi))
 
 
 @question
@@ -592,24 +594,24 @@ def law_errors(pair):
 @question
 def law_coefficients(pair):
     _, duration, centroid, _ = pair.free(pair.simple[0])
-    found = bb.law_coefficients(pair.ball, **pair.given)["bounce_velocity"]
-    assert_close(found, -(duration - centroid) / np.pi)
+    coefficient = bb.law_coefficients(pair.ball, **pair.given)["bounce_velocity"]
+    assert_close(coefficient, -(duration - centroid) / np.pi)
 
 
 @question
 def law_thresholds(pair):
-    found = bb.law_thresholds(pair.ball, **pair.given)["bounce_velocity"]
+    threshold = bb.law_thresholds(pair.ball, **pair.given)["bounce_velocity"]
     _, duration, centroid, _ = pair.free(pair.simple[0])
-    assert_close(found * 0.01, pair.ratio * (duration - centroid) / np.pi, 1e-6)
+    assert_close(threshold * 0.01, pair.ratio * (duration - centroid) / np.pi, 1e-6)
 
 
 @question
 def error_thresholds(pair):
     """The ball of this ratio has an orbit whose height differs by the tolerance."""
     given = {"quantities": ["max_height"], "low": 5.0, "high": 2e3, "samples": 7}
-    found = bb.error_thresholds(pair.ball, **given, **pair.given)["max_height"]
-    assert found.status == "found"
-    ball = pair.stretched(pair.ratio / float(found.ratio))
+    threshold = bb.error_thresholds(pair.ball, **given, **pair.given)["max_height"]
+    assert threshold.status == "found"
+    ball = pair.stretched(pair.ratio / float(threshold.ratio))
     one = bb.orbit(ball, **pair.given)
     closes(one)
     assert_close(abs(one.max_height / pair.simple[3] - 1), 0.01, 1e-6)
@@ -657,14 +659,14 @@ def refusals():
     """Messages by question, ball and table, from the table of docs/api.md."""
     page = Path(__file__).parents[1] / "docs" / "api.md"
     text = page.read_text(encoding="utf-8").replace("`", "")
-    found = {}
+    messages = {}
     for row in re.findall(r"^\| (\w.*) \|$", text, re.MULTILINE)[1:]:
         names, balls, tables, message = row.split(" | ")
         for name in names.replace(" ", "_").split(",_"):
             for ball in KINDS if balls == "all" else balls.split(", "):
                 for table in TABLES if tables == "all" else tables.split(", "):
-                    found[name, ball, table] = message
-    return found
+                    messages[name, ball, table] = message
+    return messages
 
 
 REFUSED = refusals()

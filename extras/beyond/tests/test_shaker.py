@@ -66,17 +66,17 @@ def hertz_factor(r):
 
     release.terminal = True
     release.direction = -1
-    found = solve_ivp(motion, (0, 9), (0, 1), events=release, rtol=1e-10, atol=1e-13)
-    assert -found.y[1, -1] == pytest.approx(r, abs=1e-6)
-    return found.t[-1]
+    solution = solve_ivp(motion, (0, 9), (0, 1), events=release, rtol=1e-10, atol=1e-13)
+    assert -solution.y[1, -1] == pytest.approx(r, abs=1e-6)
+    return solution.t[-1]
 
 
 def test_the_contact_times_of_the_picture_are_those_of_hertz_at_the_impact_speed():
     given = yaml.safe_load((BEYOND / "config/config.yaml").read_text("utf-8"))
     given = given["impacts"]["ext_contact_time"]
-    found = ext_contact_time(given)
+    dataset = ext_contact_time(given)
     assert len(given["balls"]) == 5
-    for (name, ball), speeds in zip(given["balls"].items(), found.impact_speed, strict=True):
+    for (name, ball), speeds in zip(given["balls"].items(), dataset.impact_speed, strict=True):
         r = ball["restitution"]
         factor = hertz_factor(r)
         bodies = ball, given["table_material"]
@@ -87,12 +87,12 @@ def test_the_contact_times_of_the_picture_are_those_of_hertz_at_the_impact_speed
         def time(frequency, r=r, scale=factor * (mass / stiffness) ** 0.4):
             return scale * (G / ((1 + r) * frequency)) ** -0.2
 
-        one = found.sel(ball_name=name)
-        np.testing.assert_allclose(speeds, G / ((1 + r) * found.frequency), rtol=1e-12)
-        np.testing.assert_allclose(one.contact_time, time(found.frequency), rtol=1e-6)
+        one = dataset.sel(ball_name=name)
+        np.testing.assert_allclose(speeds, G / ((1 + r) * dataset.frequency), rtol=1e-12)
+        np.testing.assert_allclose(one.contact_time, time(dataset.frequency), rtol=1e-6)
         stiff = brentq(lambda f, time=time: f * time(f) - 1 / 200, 0.1, 1e4)
         assert one.stiff_frequency == pytest.approx(stiff, rel=1e-6)
-    np.testing.assert_allclose(found.longest_contact_time * found.frequency, 1 / 200)
+    np.testing.assert_allclose(dataset.longest_contact_time * dataset.frequency, 1 / 200)
 
 
 def test_the_ball_of_the_replication_by_hand_is_answered_here(capsys):
@@ -182,8 +182,8 @@ def test_a_stroke_in_metres_has_no_height_that_is_no_number():
 def test_below_the_saddle_node_of_the_restitution_model_no_threshold_is_looked_for(monkeypatch):
     monkeypatch.setattr(shaker, "error_thresholds", None)
     given = {"frequency": 50.0, "restitution": 0.85, "contact_duration": 1e-4}
-    found = on_shaker(acceleration=0.05 * G, **given)
-    assert np.isnan([found.max_height.exact, found.longest_contact]).all()
+    answer = on_shaker(acceleration=0.05 * G, **given)
+    assert np.isnan([answer.max_height.exact, answer.longest_contact]).all()
 
 
 def test_measured_pairs_of_speed_and_restitution():

@@ -115,9 +115,11 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
     folders = [str(BEYOND / "src"), str(BEYOND / "workflow"), str(ROOT / "src")]
     for name, files in inputs.items():
         folder = BEYOND / "workflow" / ("studies/stages" if name in STAGES else "scripts")
-        found = ModuleFinder(path=folders, excludes=["project"])
-        found.run_script(f"{folder}/{name}.py")
-        modules = {Path(each.__file__).name for each in found.modules.values() if each.__file__}
+        finder = ModuleFinder(path=folders, excludes=["project"])
+        finder.run_script(f"{folder}/{name}.py")
+        modules = {
+            Path(module.__file__).name for module in finder.modules.values() if module.__file__
+        }
         assert modules - NO_NUMBER <= files, name
     # The lists have the __init__.py of the library. Those of the studies have a docstring only.
     for file in (BEYOND / "workflow").rglob("__init__.py"):

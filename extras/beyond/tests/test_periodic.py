@@ -154,7 +154,7 @@ def test_a_contact_may_resume_after_a_release_by_the_force():
     turns, phase, u, T, *_ = record[-2:, :, 0].T
     z = np.append(np.stack([2 * np.pi * (turns - turns[0]) + phase, u, T], axis=-1), 1.20411)
     solution = newton(equations, z[np.newaxis])
-    assert solution.found[0] and np.abs(solution.z[0] - z).max() < 1e-6
+    assert solution.converged[0] and np.abs(solution.z[0] - z).max() < 1e-6
     periodic_orbit = PeriodicOrbit(equations, solution.z[0])
     assert (
         periodic_orbit.speeds.min() < -0.01 and periodic_orbit.stable and periodic_orbit.admissible
@@ -220,7 +220,7 @@ def test_the_list_of_orbits_with_one_impact_is_complete(ball, amplitude, n):
         columns.append(random.uniform(0, 2 * np.pi * n * ball.frequency_ratio, size))
     z = np.stack([*columns, np.full(size, amplitude)], axis=-1)
     solution = newton(equations, z, iterations=15)
-    z = solution.z[solution.found]
+    z = solution.z[solution.converged]
     z = z[(z[:, 1:-1] > 0).all(axis=1) & (np.abs(z[:, 0]) < 1e3)]
     z = z[np.unique(z.round(6), axis=0, return_index=True)[1]]
     z = z[equations.admissible(z)]

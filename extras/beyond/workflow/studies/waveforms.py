@@ -48,6 +48,6 @@ def contact_orbits(table: Table, phase: NDArray, ball: SpringDamper, n: int) -> 
     at_phase = np.zeros((len(phase), 4))
     at_phase[:, 0] = 1.0
     solution = newton(equations, np.stack(columns, axis=-1), at_phase, iterations=40)
-    z = np.where(solution.found[:, np.newaxis], solution.z, np.nan)
+    z = np.where(solution.converged[:, np.newaxis], solution.z, np.nan)
     height = equations.max_height(z)
     return ContactOrbits(z[:, 3], z[:, 1], z[:, 2] / ball.frequency_ratio, height)

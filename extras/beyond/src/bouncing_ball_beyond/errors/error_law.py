@@ -287,8 +287,10 @@ def _texts(simple: Flags, contact: Flags) -> tuple[NDArray, NDArray]:
     unstable = UNSTABLE[simple.unstable + 2 * contact.unstable]
     pairs = np.broadcast_arrays(simple.obstacle, contact.obstacle)
     texts = [
-        "; ".join(f"{where}: {why}" for where, why in zip(UNSTABLE[1:3], each, strict=True) if why)
-        for each in zip(*map(np.ravel, pairs), strict=True)
+        "; ".join(
+            f"{where}: {why}" for where, why in zip(UNSTABLE[1:3], obstacles, strict=True) if why
+        )
+        for obstacles in zip(*map(np.ravel, pairs), strict=True)
     ]
     return unstable, np.reshape(texts, pairs[0].shape)[()]
 
@@ -363,7 +365,7 @@ def _simple_flags(
     trace, determinant = restitution_trace(impact, push)
     unstable = np.isfinite(trace) & ~are_stable(trace, determinant)
     given = np.broadcast_arrays(phase, impact.speed, amplitude, impact.restitution, impact.n)
-    tau, u, scale, r, n = (each.ravel() for each in given)
+    tau, u, scale, r, n = (values.ravel() for values in given)
     # r is above 1 by rounding in free impacts without loss.
     equations = OrbitEquations(Rigid(np.clip(r, 0, 1)), 1, n, table=table)
     obstacle = _obstacles(equations, np.stack([tau, u, scale], axis=-1))
@@ -373,10 +375,10 @@ def _simple_flags(
 def _obstacles(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Why no ball follows orbits, shape (rows,); "" for rows that are NaN."""
     exist = np.flatnonzero(np.isfinite(z[:, 0]))
-    found = np.full(len(z), "", object)
+    obstacles = np.full(len(z), "", object)
     for block in np.array_split(exist, exist.size // BLOCK + 1) if exist.size else []:
-        found[block] = equations.rows(block).obstacles(z[block])
-    return found.astype(str)
+        obstacles[block] = equations.rows(block).obstacles(z[block])
+    return obstacles.astype(str)
 
 
 BLOCK = 4096
@@ -421,9 +423,9 @@ def law_coefficients(
 
 def _with_flags_of(orbits: Compared, values: dict) -> Compared:
     """Return values that belong to the same orbits as others."""
-    found = Compared(values, NONE, NONE)
-    found.unstable, found.inadmissible = orbits.unstable, orbits.inadmissible
-    return found
+    compared = Compared(values, NONE, NONE)
+    compared.unstable, compared.inadmissible = orbits.unstable, orbits.inadmissible
+    return compared
 
 
 def law_thresholds(
@@ -462,17 +464,17 @@ def law_thresholds(
     Examples
     --------
     >>> from bouncing_ball_beyond import SpringDamper
-    >>> found = law_thresholds(SpringDamper(1.0, restitution=0.65), amplitude=1.0)
-    >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
+    >>> thresholds = law_thresholds(SpringDamper(1.0, restitution=0.65), amplitude=1.0)
+    >>> round(float(thresholds["max_height"]), 2), round(float(thresholds["phase"]), 1)
     (82.18, 17.8)
     """
     impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
     amplitude = off_rounding(impact, amplitude, table)
     coefficients = law_coefficients(impact, amplitude=amplitude, table=table)
-    found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
+    thresholds = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
     for name in ("max_height", "phase"):
-        found[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
-    return _with_flags_of(coefficients, found)
+        thresholds[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
+    return _with_flags_of(coefficients, thresholds)
 
 
 @np.errstate(invalid="ignore", divide="ignore")
@@ -510,14 +512,14 @@ def _first_stretch(
     errors = error(places, amplitude, *impact)
     beyond = np.abs(errors) > tolerance
     after = np.maximum(beyond.argmax(axis=0), 1)[np.newaxis]
-    low, high = (np.take_along_axis(places, each, axis=0)[0] for each in (after - 1, after))
+    low, high = (np.take_along_axis(places, index, axis=0)[0] for index in (after - 1, after))
     value = np.take_along_axis(errors, after, axis=0)[0]
-    found = find_root(
+    crossing = find_root(
         lambda stretch, bound, *known: error(stretch, *known) - bound,
         (low, high),
         args=(np.copysign(tolerance, value), amplitude, *impact),
     )
-    return np.where(beyond.any(axis=0), found.x, end + 0 * errors[-1])
+    return np.where(beyond.any(axis=0), crossing.x, end + 0 * errors[-1])
 
 
 def ball_at_ratio(
@@ -589,10 +591,10 @@ def _contact_values(
     check_whole_numbers("n", n)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     check_ends("ball", ball, 1.5 * np.pi * np.asarray(n))
-    found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
+    values_of_rows = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in BIFURCATIONS:
-        if name in found:
-            found[name] = _bifurcation(row, periods, name, table)
+        if name in values_of_rows:
+            values_of_rows[name] = _bifurcation(row, periods, name, table)
     of_orbits = [name for name in quantities if name not in BIFURCATIONS]
     unstable = np.zeros(amplitudes.size, bool)
     obstacle = np.full(amplitudes.size, "", object)
@@ -605,13 +607,13 @@ def _contact_values(
             of_block, at = equations.rows(good), block[good]
             values = _values(of_block, z[good])
             for name in of_orbits:
-                found[name][at] = values[name]
+                values_of_rows[name][at] = values[name]
             if judged:
                 linear = of_block.linearized(z[good])
                 unstable[at] = ~of_block.stable(linear)
                 obstacle[at] = of_block.obstacles(z[good], linear)
     flags = Flags(unstable.reshape(shape), obstacle.astype(str).reshape(shape))
-    return {name: values.reshape(shape) for name, values in found.items()}, flags
+    return {name: values.reshape(shape) for name, values in values_of_rows.items()}, flags
 
 
 APART = 0.02
@@ -630,7 +632,7 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
         guess = guess_of_instants(ball, periods, amplitude, table=table, start=speed)
     # At a saddle-node each Newton step only halves the error.
     solution = newton(equations, guess, iterations=30)
-    good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
+    good = solution.converged & (equations.turn(solution.linear) < 1 + AT_FOLD)
     # On compliant contacts Newton's method may find a solution that is not an orbit.
     good &= (
         (equations.ends(solution.z).speed[:, 0] > 0)
@@ -670,7 +672,7 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
     rows = np.stack(np.broadcast_arrays(*guess, amplitude), axis=-1)
     solution = newton(equations, rows, iterations=20)
     amplitude = solution.z[:, -1]
-    return np.where(solution.found & (amplitude > 0), amplitude, np.nan)
+    return np.where(solution.converged & (amplitude > 0), amplitude, np.nan)
 
 
 def _values(equations: OrbitEquations, z: NDArray) -> dict:
@@ -834,14 +836,14 @@ def error_thresholds(
     --------
     >>> from bouncing_ball_beyond import SpringDamper
     >>> ball = SpringDamper(1.0, restitution=0.65)
-    >>> found = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
-    >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
+    >>> thresholds = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
+    >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in thresholds.values()]
     ['82.177 found', '18.054 found']
 
     Above the period doubling, unstable orbits are compared:
 
-    >>> found = error_thresholds(ball, amplitude=1.6, quantities=["max_height"])["max_height"]
-    >>> round(float(found.ratio), 2), str(found.unstable)
+    >>> threshold = error_thresholds(ball, amplitude=1.6, quantities=["max_height"])["max_height"]
+    >>> round(float(threshold.ratio), 2), str(threshold.unstable)
     (75.79, 'in both models')
     """
     if not one_number("low", low) < one_number("high", high):
@@ -856,7 +858,7 @@ def error_thresholds(
     # The thresholds of quantities of one orbit are found together. Each bifurcation is found alone.
     alone = [name for name in quantities if name in BIFURCATIONS]
     together = [name for name in quantities if name not in alone]
-    found: dict[str, ErrorThreshold] = {}
+    thresholds: dict[str, ErrorThreshold] = {}
     for names in filter(None, [together, *([name] for name in alone)]):
 
         def excess(logarithms: Values, places: Values, names: Any = names) -> Values:
@@ -893,5 +895,5 @@ def error_thresholds(
             of_orbit = [name] if name not in alone else []
             there = path(np.where(np.isfinite(ratio), ratio, high))
             _, flags = _exact_errors(there, *given, of_orbit, table)
-            found[name] = ErrorThreshold(ratio, status, *_texts(*flags))
-    return {name: found[name] for name in quantities}
+            thresholds[name] = ErrorThreshold(ratio, status, *_texts(*flags))
+    return {name: thresholds[name] for name in quantities}

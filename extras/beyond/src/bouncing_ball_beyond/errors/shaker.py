@@ -130,12 +130,14 @@ class ShakerAnswer:
     @property
     def stable(self) -> bool:
         """Whether the orbit is stable, in the restitution model and on the contact."""
-        return self.bounces and all(abs(each) <= 1 + NEUTRAL for each in self.multiplier)
+        return self.bounces and all(
+            abs(multiplier) <= 1 + NEUTRAL for multiplier in self.multiplier
+        )
 
     @property
     def _unstable(self) -> tuple[bool, ...]:
         """Whether the orbit is unstable, in the restitution model and on the contact."""
-        return tuple(abs(each) > 1 + NEUTRAL for each in self.multiplier)
+        return tuple(abs(multiplier) > 1 + NEUTRAL for multiplier in self.multiplier)
 
     @property
     def error(self) -> float:
@@ -170,8 +172,8 @@ class ShakerAnswer:
     @property
     def _way(self) -> str:
         """Way in which the orbit has lost its stability, by its multipliers."""
-        lost = [each for each in self.multiplier if abs(each) > 1 + NEUTRAL]
-        turning = any(abs(each.imag) > 0 or each.real > 0 for each in lost)
+        lost = [multiplier for multiplier in self.multiplier if abs(multiplier) > 1 + NEUTRAL]
+        turning = any(abs(multiplier.imag) > 0 or multiplier.real > 0 for multiplier in lost)
         return "Neimark-Sacker" if turning else "period doubling"
 
     def __repr__(self) -> str:
@@ -559,7 +561,7 @@ def _answer(
             at_longest = f"no ball follows the orbit ({threshold.inadmissible})"
         elif threshold.unstable:
             at_longest = f"the orbit is unstable {threshold.unstable}"
-    found = other_orbits(ball, n, float(amplitude), table, float(phase), float(impact.speed))
+    others = other_orbits(ball, n, float(amplitude), table, float(phase), float(impact.speed))
     unit = {"saddle_node": 1.0, "period_doubling": 1.0, "max_height": fall / rate**2}
     compared: dict[str, Any] = {
         name: ByModel(
@@ -581,7 +583,7 @@ def _answer(
         multiplier=multiplier,
         table=table,
         obstacle=(simple_obstacle, obstacle),
-        others=tuple((found[:, 1] * fall / rate).tolist()),
+        others=tuple((others[:, 1] * fall / rate).tolist()),
         at_longest=at_longest,
         **compared,
     )

@@ -60,7 +60,8 @@ class FollowedBranch:
         kind = self.equations.kind
         name = type(self).__name__ + (kind and f": {kind}")
         kinds = ", ".join(
-            f"{each.kind} at {each.z[-1]:.8g}{_unfollowed(each)}" for each in self.special
+            f"{special.kind} at {special.z[-1]:.8g}{_unfollowed(special)}"
+            for special in self.special
         )
         rows = {
             "orbits": len(self),
@@ -133,7 +134,7 @@ class FollowedBranch:
         share = np.concatenate([np.arange(count) / count for count in counts])[:, np.newaxis]
         guess = self.z[which] + share * chords[which]
         solution = newton(self.equations, guess, (chords / units**2)[which])
-        good = solution.found | (share[:, 0] == 0)
+        good = solution.converged | (share[:, 0] == 0)
         z = np.where(share == 0, guess, solution.z)[good]
         return replace(self, z=np.concatenate([z, self.z[-1:]]))
 
@@ -142,10 +143,10 @@ class FollowedBranch:
 
         Spaces and hyphens are equivalent. Raises OrbitNotFound if there is no such orbit.
         """
-        for each in self.special:
-            if _plain(each.kind) == _plain(kind):
-                return each
-        others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
+        for special in self.special:
+            if _plain(special.kind) == _plain(kind):
+                return special
+        others = ", ".join(dict.fromkeys(special.kind for special in self.special)) or "none"
         raise OrbitNotFound(f"no {kind} here; special orbits: {others}")
 
     def zeros(self, function: Callable[[PeriodicOrbit], float]) -> list[PeriodicOrbit]:
@@ -161,15 +162,16 @@ class FollowedBranch:
         --------
         >>> from bouncing_ball_beyond import Rigid, follow, orbit
         >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.1)
-        >>> [round(each.amplitude, 6) for each in branch.zeros(lambda one: one.max_height - 5.5)]
+        >>> zeros = branch.zeros(lambda orbit: orbit.max_height - 5.5)
+        >>> [round(zero.amplitude, 6) for zero in zeros]
         [1.189988]
         """
-        values = np.array([function(each) for each in self.orbits])
-        found = []
+        values = np.array([function(orbit) for orbit in self.orbits])
+        orbits = []
         for i in np.flatnonzero(np.diff(values >= 0)).tolist():
             share = brentq(lambda share, i=i: function(self._inside(i, share)), 0, 1, xtol=1e-14)
-            found.append(self._inside(i, share))
-        return found
+            orbits.append(self._inside(i, share))
+        return orbits
 
     def _inside(self, i: int, share: float) -> PeriodicOrbit:
         """Orbit at a share of the step from orbit i to the next one."""
@@ -248,11 +250,11 @@ def followed(
     ]
     row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
     every = zip(*(points for points, _ in steps), strict=True)
-    z, slopes, tests, _ = (np.concatenate(each) for each in every)
+    z, slopes, tests, _ = (np.concatenate(parts) for parts in every)
     crossings = crossings_of(start.equations, row, z, slopes, tests, grazings)
-    z, found = np.empty((2, 0))
+    z, is_located = np.empty((2, 0))
     if len(crossings.row):
-        z, found = located(start.equations, crossings)
+        z, is_located = located(start.equations, crossings)
     branches: list[Any] = []
     switches: list[tuple] = []
     for i, (path, end) in enumerate(steps):
@@ -262,7 +264,7 @@ def followed(
         for j in np.flatnonzero(crossings.row == i):
             kind = str(crossings.kind[j])
             number = crossings.number[j]
-            here = z[j] if found[j] else None
+            here = z[j] if is_located[j] else None
             if kind == "period halving":
                 here = None if equations.kind else halved_at(equations, crossings.ends[:, j])
             if here is not None and not (number == 0 and kind == own):
@@ -273,7 +275,7 @@ def followed(
                 passed.append((order, equations.orbit(here, kind)))
         passed.sort(key=itemgetter(0))
         orbits = path.z
-        kinds = [each.kind for _, each in passed]
+        kinds = [orbit.kind for _, orbit in passed]
         ends = [j for j, kind in enumerate(kinds) if ends_at(kind, until[i], equations.kind)]
         if ends:
             passed = passed[: ends[0] + 1]
@@ -288,7 +290,7 @@ def followed(
             why = KINDS[end].end and f": {KINDS[end].end}"
             end = f"{end} near {_place(equations, orbits[-1], 7)}{why}"
             orbits = orbits[:-1]
-            passed = [each for each in passed if each[0][0] + 1 < len(orbits)]
+            passed = [crossing for crossing in passed if crossing[0][0] + 1 < len(orbits)]
         else:
             end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
         switch = switch_of(equations, path.z[:stop]) if stop else None
@@ -299,16 +301,16 @@ def followed(
             before, at, ahead = switch
             # Beyond the switch, the contacts of this part of the branch end too late.
             passed = [
-                each
-                for each in passed
-                if each[0][0] + 1 < len(before)
-                or equations.surface_share(each[1].z[np.newaxis])[0] > SWITCHED
+                crossing
+                for crossing in passed
+                if crossing[0][0] + 1 < len(before)
+                or equations.surface_share(crossing[1].z[np.newaxis])[0] > SWITCHED
             ]
             passed.append(((len(before),), equations.orbit(at, SWITCH)))
             orbits = np.vstack([before, at])
             end = f"{SWITCH} at {_place(equations, at)}"
             switches.append((i, at, ahead))
-        special = tuple(each for _, each in passed)
+        special = tuple(orbit for _, orbit in passed)
         kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
         branches.append(kind_of_branch(equations, orbits, special, "", end))
     for i, at, ahead in switches:
@@ -358,6 +360,6 @@ def _in_words(
     here = f"{name} = {values[j]:.10g}"
     if len(values) > 1 or abs(values[j] - goal) <= 1e-12 * abs(goal):
         return f"{here} is reached"
-    folds = [each.z[-1] for _, each in passed if each.kind == "saddle-node"]
+    folds = [orbit.z[-1] for _, orbit in passed if orbit.kind == "saddle-node"]
     turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
     return f"{here} is reached, on the other side of the start than the goal{turned}"

@@ -100,18 +100,18 @@ def follow(
     --------
     >>> from bouncing_ball_beyond import Rigid, orbit
     >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8)
-    >>> [(each.kind, round(each.amplitude, 6)) for each in branch.special]
+    >>> [(special.kind, round(special.amplitude, 6)) for special in branch.special]
     [('period doubling', 1.526824)]
     """
     orbits = list(orbit) if isinstance(orbit, Iterable) else [orbit]
-    if not all(isinstance(each, PeriodicOrbit | OrbitNotFound | SearchEnded) for each in orbits):
+    if not all(isinstance(start, PeriodicOrbit | OrbitNotFound | SearchEnded) for start in orbits):
         raise ValueError(
             f"orbit = {brief(orbit)}: must be a periodic orbit, such as orbit(ball, amplitude=1.0),"
             " or a list of them"
         )
     points = whole_number("points", points, 2)
-    found = _follow_all(orbits, along, to, points, [None] * len(orbits))
-    return alone(found[0]) if isinstance(orbit, PeriodicOrbit) else found
+    branches = _follow_all(orbits, along, to, points, [None] * len(orbits))
+    return alone(branches[0]) if isinstance(orbit, PeriodicOrbit) else branches
 
 
 def cascade(doubling: PeriodicOrbit, *, to: float, impacts: int = 64) -> list[FollowedBranch]:
@@ -141,7 +141,7 @@ def cascade(doubling: PeriodicOrbit, *, to: float, impacts: int = 64) -> list[Fo
     >>> from bouncing_ball_beyond import Rigid, orbit
     >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8)
     >>> branches = cascade(branch.first("period doubling"), to=1.8, impacts=4)
-    >>> [(each.impacts, each.special[-1].kind) for each in branches]
+    >>> [(branch.impacts, branch.special[-1].kind) for branch in branches]
     [(2, 'period doubling'), (4, 'period doubling')]
     """
     impacts = whole_number("impacts", impacts, 2)
@@ -182,14 +182,16 @@ def _follow_all(
             f"to = {brief(to)}: must be a number, a tuple (low, high), or one number for each orbit"
         )
     ways = []
-    for i, each in enumerate(orbits):
-        if not isinstance(each, PeriodicOrbit):
+    for i, orbit in enumerate(orbits):
+        if not isinstance(orbit, PeriodicOrbit):
             continue
-        path = each.equations.along[-1] if along is None else path_of(along, each.ball, each.table)
+        path = (
+            orbit.equations.along[-1] if along is None else path_of(along, orbit.ball, orbit.table)
+        )
         goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
-        alike = (x.at(**dict.fromkeys(x.parameters, 0.0)) for x in (each.ball, each.table))
-        common = each.kind, path, each.impacts, *alike
-        ways += [(common, i, task) for task in _tasks(each, path, goal, until[i])]
+        alike = (x.at(**dict.fromkeys(x.parameters, 0.0)) for x in (orbit.ball, orbit.table))
+        common = orbit.kind, path, orbit.impacts, *alike
+        ways += [(common, i, task) for task in _tasks(orbit, path, goal, until[i])]
     parts: list[list] = [[] for _ in orbits]
     for (kind, *_), rows in groupby(ways, key=itemgetter(0)):
         _, numbers, tasks = zip(*rows, strict=True)
@@ -198,12 +200,12 @@ def _follow_all(
         branches = _from_special(task, kind, points, grazings)
         for i, branch in zip(numbers, branches, strict=True):
             parts[i].append(branch)
-    return [_whole(some) if some else each for some, each in zip(parts, orbits, strict=True)]
+    return [_whole(some) if some else orbit for some, orbit in zip(parts, orbits, strict=True)]
 
 
 def _whole(ways: list) -> FollowedBranch | OrbitNotFound:
     """Join the branches of one orbit, or return the reason why there is none."""
-    branches = [each for each in ways if isinstance(each, FollowedBranch)]
+    branches = [way for way in ways if isinstance(way, FollowedBranch)]
     if len(branches) == 2:
         return joined(*branches)
     return branches[0] if branches else ways[0]
@@ -213,7 +215,7 @@ def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list
     """Return tasks, one for each direction in which the orbit is followed."""
     equations, z = orbit.on(path)
     value = float(z[-1])
-    low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
+    low, high = (float(limit) for limit in path.limits(orbit.ball, orbit.amplitude))
     if to is None:
         turn = path.name.startswith("phase_")
         to = value + PERIOD if turn else usual_range(path, value, low, high)[1]
@@ -235,12 +237,12 @@ def _stacked(tasks: tuple[Task, ...]) -> Task:
         return tasks[0]
     equations = replace(
         tasks[0].equations,
-        ball=_in_rows([each.equations.ball for each in tasks]),
-        table=_in_rows([each.equations.table for each in tasks]),
-        periods=np.array([each.equations.periods for each in tasks]),
-        amplitude=np.array([each.equations.amplitude for each in tasks]),
+        ball=_in_rows([task.equations.ball for task in tasks]),
+        table=_in_rows([task.equations.table for task in tasks]),
+        periods=np.array([task.equations.periods for task in tasks]),
+        amplitude=np.array([task.equations.amplitude for task in tasks]),
     )
-    columns = zip(*(each[1:] for each in tasks), strict=True)
+    columns = zip(*(task[1:] for task in tasks), strict=True)
     return Task(equations, *(np.concatenate(rows) for rows in columns))
 
 
@@ -248,7 +250,8 @@ def _in_rows(several: list) -> Any:
     """Combine several balls, or several tables, into one with arrays as parameters."""
     first = several[0]
     values = {
-        name: np.array([each.parameters[name] for each in several]) for name in first.parameters
+        name: np.array([ball_or_table.parameters[name] for ball_or_table in several])
+        for name in first.parameters
     }
     return first.at(**values) if values else first
 
@@ -258,23 +261,23 @@ def _from_special(task: Task, kind: str, points: int, grazings: bool) -> list:
     if kind not in STARTS:
         return [OrbitNotFound(f"{kind}: branches end at orbits of this kind")] * len(task.z)
     start = STARTS[kind](task)
-    found: list = [OrbitNotFound(reason) for reason in start.reasons]
+    branches: list = [OrbitNotFound(reason) for reason in start.reasons]
     going = np.flatnonzero(start.reasons == "")
     if not going.size:
-        return found
+        return branches
     # The parameter stays between both goals, or between the goal and its mirror image on the other
     # side of the start.
     mirror = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
     other = np.where(start.goal == task.goal, task.other, task.goal)
     behind = np.where(np.isfinite(task.other), other, mirror)
     window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
-    branches = followed(start.take(going), window, task.until[going], points, kind, grazings)
+    started = followed(start.take(going), window, task.until[going], points, kind, grazings)
     name = task.equations.along[-1].name
-    for i, branch in zip(going, branches, strict=True):
+    for i, branch in zip(going, started, strict=True):
         path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
         text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
-        found[i] = replace(branch, z=path, start=text)
-    return found
+        branches[i] = replace(branch, z=path, start=text)
+    return branches
 
 
 @dataclass(frozen=True, repr=False)
@@ -310,12 +313,12 @@ class Limits(Sequence):
         return 2
 
     def __repr__(self) -> str:
-        places = [str(each) for each in self]
-        for i, each in enumerate(self):
-            if isinstance(each, PeriodicOrbit):
-                places[i] = f"{each.kind} at Λ = {each.amplitude:.10g}"
-                places[i] += f" ({each.obstacle})" if each.obstacle else ""
-        known = {each.amplitude for each in self if isinstance(each, PeriodicOrbit)}
+        places = [str(limit) for limit in self]
+        for i, limit in enumerate(self):
+            if isinstance(limit, PeriodicOrbit):
+                places[i] = f"{limit.kind} at Λ = {limit.amplitude:.10g}"
+                places[i] += f" ({limit.obstacle})" if limit.obstacle else ""
+        known = {limit.amplitude for limit in self if isinstance(limit, PeriodicOrbit)}
         if known and not (len(self.stable_ranges) == 1 and known <= {*self.stable_ranges[0]}):
             ranges = (f"from {low:.10g} to {high:.10g}" for low, high in self.stable_ranges)
             places.append(f"stable {' and '.join(ranges) or 'nowhere on this branch'}")
@@ -373,10 +376,10 @@ def limits(
     row, (periods,), shape = rows_of(ball, n=n)
     most = one_number("evaluations", evaluations)
     effort = Effort("limits", most, progress, balls=periods.size)
-    found = limits_of(OrbitEquations(row, 1, periods, table=table, effort=effort))
-    if not shape and isinstance(found[0].saddle_node, SearchEnded):
-        raise found[0].saddle_node
-    return found if shape else found[0]
+    limits_of_rows = limits_of(OrbitEquations(row, 1, periods, table=table, effort=effort))
+    if not shape and isinstance(limits_of_rows[0].saddle_node, SearchEnded):
+        raise limits_of_rows[0].saddle_node
+    return limits_of_rows if shape else limits_of_rows[0]
 
 
 def limits_of(equations: OrbitEquations) -> list[Limits]:
@@ -390,30 +393,30 @@ def limits_of(equations: OrbitEquations) -> list[Limits]:
         until = [None] * (2 * rows)
     to = [LOWEST] * rows + [None] * rows
     branches = _follow_all(between * 2, "amplitude", to, 500, until, False, equations.effort)
-    found = []
+    limits_of_rows = []
     for start, below, above in zip(between, branches[:rows], branches[rows:], strict=True):
         if not isinstance(below, FollowedBranch):
-            found.append(Limits(below, below))
+            limits_of_rows.append(Limits(below, below))
             continue
-        folds = [i for i, each in enumerate(below.special) if each.kind == "saddle-node"]
+        folds = [i for i, orbit in enumerate(below.special) if orbit.kind == "saddle-node"]
         to_fold = below.special[: folds[0] + 1] if folds else below.special
         special = (*to_fold[::-1], *above.special)
         fold = _limit(special, "saddle-node", below.end)
         doubling = _limit(special, "period doubling", above.end)
         branch = joined(below, above)
         ranges = _stable_ranges(branch)
-        found.append(Limits(fold, doubling, ranges, _other_folds(start, branch)))
-    return found
+        limits_of_rows.append(Limits(fold, doubling, ranges, _other_folds(start, branch)))
+    return limits_of_rows
 
 
 def _other_folds(start: PeriodicOrbit, branch: FollowedBranch) -> NDArray:
     """Saddle-nodes (Λ, τ, u) of instantaneous impacts, without those that a branch passes."""
     speeds = closing_speeds(start.ball, start.periods)
-    found = folds(start.periods, start.table, speeds)
-    passed = [each for each in branch.special if each.kind == "saddle-node"]
-    for each in passed or [start]:
-        found = others(found, speeds, each.times[0], each.speeds[0])
-    return found[found[:, 0] > LOWEST]
+    saddle_nodes = folds(start.periods, start.table, speeds)
+    passed = [orbit for orbit in branch.special if orbit.kind == "saddle-node"]
+    for orbit in passed or [start]:
+        saddle_nodes = others(saddle_nodes, speeds, orbit.times[0], orbit.speeds[0])
+    return saddle_nodes[saddle_nodes[:, 0] > LOWEST]
 
 
 def _stable_ranges(branch: FollowedBranch) -> tuple[tuple[float, float], ...]:
@@ -424,13 +427,13 @@ def _stable_ranges(branch: FollowedBranch) -> tuple[tuple[float, float], ...]:
     """
     T = branch.equations.split(branch.z)[0][..., 2:]
     path = (branch if T.max(initial=0.0) > LASTING else branch.refined()).with_special()
-    special = [i for i, each in enumerate(path) if each.kind in CHANGES]
+    special = [i for i, orbit in enumerate(path) if orbit.kind in CHANGES]
     ranges = []
     for first, last in pairwise([0, *special, len(path) - 1]):
         ends = np.array([path[first].z, path[last].z])
         if np.array_equal(*ends):
             continue
-        z = np.array([each.z for each in path[first : last + 1]])
+        z = np.array([orbit.z for orbit in path[first : last + 1]])
         if len(z) == 2:
             middle = _between(branch.equations, z[[0]], z[[1]], 0.5)
             z = np.insert(z, 1, middle, axis=0)
@@ -473,7 +476,7 @@ def _followed(equations: OrbitEquations, z: NDArray) -> list[tuple[float, float]
 
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
     """First special orbit of a kind, or an OrbitNotFound with the reason why the branch ends."""
-    of_kind = (each for each in special if each.kind == kind)
+    of_kind = (orbit for orbit in special if orbit.kind == kind)
     if end.startswith(tuple(name for name in KINDS if KINDS[name].end)):
         why = f"there is no {kind} on the branch of orbits, which ends at the {end}"
     elif end.startswith(CLOSED):
@@ -498,7 +501,7 @@ def _between_limits(equations: OrbitEquations) -> list:
     phase = table.phase_of_angle(np.arctan2(push, fold))
     between = np.hypot(fold, push) / np.hypot(table(phase, 1), table(phase, 2))
     around = [times * np.pi * n / table.slope for times in AROUND]
-    found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
+    orbit_of_row: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     done = np.zeros(len(n), bool)
     # Where W′ has several maxima, a larger Λ may belong to orbits next to another one.
     nearest = 2 * fold / (table.slope + max(table.next_low_slope, 0.0))
@@ -511,8 +514,8 @@ def _between_limits(equations: OrbitEquations) -> list:
         if not todo.size:
             break
         orbits, done[todo] = search(equations.rows(todo), amplitude[todo], 1)
-        for row, each in zip(todo, orbits, strict=True):
-            if each and (done[row] or isinstance(found[row], OrbitNotFound)):
-                found[row] = each
-            done[row] |= isinstance(each, SearchEnded)
-    return found
+        for row, orbit in zip(todo, orbits, strict=True):
+            if orbit and (done[row] or isinstance(orbit_of_row[row], OrbitNotFound)):
+                orbit_of_row[row] = orbit
+            done[row] |= isinstance(orbit, SearchEnded)
+    return orbit_of_row

@@ -72,7 +72,7 @@ def special_curve(
     equations, z = _start(special, along)
     window = _limits(equations, z, special, ranges)
     first = newton(equations, z[np.newaxis])
-    if not first.found[0]:
+    if not first.converged[0]:
         raise OrbitNotFound(f"no {equations.kind} is found: Newton's method does not converge")
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
         raise OrbitNotFound(
@@ -105,7 +105,7 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
             f"kind = {special.kind!r}: a curve must start at a special orbit of a branch:"
             f" {', '.join(sorted(allowed, key=str.lower))}"
         )
-    paths = tuple(path_of(each, special.ball, special.table) for each in along)
+    paths = tuple(path_of(name, special.ball, special.table) for name in along)
     equations, z = special.on(*paths)
     if special.kind == "period halving":
         half, rows = equations.halved(z[np.newaxis])
@@ -117,7 +117,8 @@ def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, range
     """Minima and maxima of both parameters, shape (2, 2). The first row has the minima."""
     wanted = {} if ranges is None else ranges
     if not isinstance(wanted, Mapping) or any(
-        np.size(each) != 2 or np.asarray(each).dtype.kind not in "iuf" for each in wanted.values()
+        np.size(limits) != 2 or np.asarray(limits).dtype.kind not in "iuf"
+        for limits in wanted.values()
     ):
         raise ValueError(
             f"ranges = {brief(ranges)}: must be a mapping of names to (low, high), such as"

@@ -136,7 +136,7 @@ class Flights(NamedTuple):
 
     def at(self, t: NDArray) -> tuple[NDArray, NDArray]:
         """δ and δ′ at times t after the release, shape (rows, k, times)."""
-        leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self[:5])
+        leaves, gap, speed, _, amplitude = (quantity[..., np.newaxis] for quantity in self[:5])
         table = self.table.rows(np.s_[..., np.newaxis])
         return flight(t, leaves, gap, speed, amplitude, table)
 
@@ -232,8 +232,8 @@ class OrbitEquations:
 
     def orbit(self, z: NDArray, kind: str = "") -> "PeriodicOrbit":
         """Return the orbit z, shape (N,), as a `PeriodicOrbit`."""
-        found = replace(self, kind="", effort=None) if self.kind or self.effort else self
-        return PeriodicOrbit(found, z, kind)
+        equations = replace(self, kind="", effort=None) if self.kind or self.effort else self
+        return PeriodicOrbit(equations, z, kind)
 
     def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
         """Return impacts, shape (rows, k, q); then the ball, Λ and the table, as columns."""
@@ -360,9 +360,9 @@ class OrbitEquations:
         shift = step * self.scales(z)
         nudges = np.concatenate([np.zeros((1, length)), *np.multiply.outer(nodes, np.eye(length))])
         nearby = (z + nudges[:, np.newaxis] * shift).reshape(-1, length)
-        each = self.rows(np.tile(np.arange(rows), len(nudges)))
-        linear = each.linearized(nearby)
-        values = each.excess(nearby, linear)
+        equations = self.rows(np.tile(np.arange(rows), len(nudges)))
+        linear = equations.linearized(nearby)
+        values = equations.excess(nearby, linear)
         rates = np.ones(len(nearby))
         if self.kind in MULTIPLIERS:
             rates = linear.derivatives[..., 0, 2 : self.unknowns].prod(axis=(1, 2))
@@ -712,11 +712,11 @@ class OrbitNotFound(ValueError):
     """
 
 
-def alone(found: Any) -> Any:
+def alone(outcome: Any) -> Any:
     """Return the result for a single ball or orbit, or raise it if it is a reason why none is."""
-    if isinstance(found, OrbitNotFound | SearchEnded):
-        raise found
-    return found
+    if isinstance(outcome, OrbitNotFound | SearchEnded):
+        raise outcome
+    return outcome
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -967,19 +967,19 @@ def other_orbits(
 ) -> NDArray:
     """τ and u of other n-T orbits than that of an impact; see :attr:`PeriodicOrbit.others`."""
     speeds = closing_speeds(ball, n)
-    found = same_side(instants(ball, n, amplitude, table, speeds), ball, table, side)
-    found = others(found, speeds, tau, u)
-    if not len(found):
-        return found
-    simple = Rigid(np.clip(ball.signature(found[:, 1]).restitution, 0, 1))
+    orbits = same_side(instants(ball, n, amplitude, table, speeds), ball, table, side)
+    orbits = others(orbits, speeds, tau, u)
+    if not len(orbits):
+        return orbits
+    simple = Rigid(np.clip(ball.signature(orbits[:, 1]).restitution, 0, 1))
     equations = OrbitEquations(simple, 1, n, table=table)
-    return found[equations.admissible(np.insert(found, 2, amplitude, axis=1))]
+    return orbits[equations.admissible(np.insert(orbits, 2, amplitude, axis=1))]
 
 
 def _short(value: Any) -> str:
     """Text of a value with six digits. At most four entries of an array are shown."""
     if isinstance(value, np.ndarray):
-        text = " ".join(f"{each:.6g}" for each in value[:4])
+        text = " ".join(f"{number:.6g}" for number in value[:4])
         return f"[{text}{' …' if len(value) > 4 else ''}]"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 

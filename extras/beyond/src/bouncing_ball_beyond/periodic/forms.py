@@ -326,7 +326,7 @@ def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
             " there are no orbits with one impact more"
         )
     ends = equations.ends(z[np.newaxis])
-    leaves, gap, speed, last, amplitudes = (each[0] for each in ends[:5])
+    leaves, gap, speed, last, amplitudes = (quantity[0] for quantity in ends[:5])
     amplitude = float(amplitudes[0])
     table = ends.table.rows(0).rows(0)
     times = np.linspace(0, last, FLIGHT_SAMPLES)
@@ -376,7 +376,7 @@ def one_impact_more(
     normal = np.zeros((1, guess.size))
     normal[0, place + 1] = 1.0
     solution = newton(more, guess[np.newaxis], normal)
-    if not solution.found[0]:
+    if not solution.converged[0]:
         raise OrbitNotFound(
             f"no orbit with {more.impacts} impacts is found next to the grazing flight:"
             " Newton's method does not converge"

@@ -46,8 +46,8 @@ def closing_speeds(ball: Ball, n: int) -> NDArray:
 
 def around(function: Any, size: float) -> NDArray:
     """Find all roots of a function of the phase in [0, 2π)."""
-    found = roots(function, 0.0, PERIOD, size) % PERIOD
-    return np.unique(np.where(PERIOD - found < 1e-12, 0.0, found))
+    phases = roots(function, 0.0, PERIOD, size) % PERIOD
+    return np.unique(np.where(PERIOD - phases < 1e-12, 0.0, phases))
 
 
 def instants(
@@ -58,12 +58,12 @@ def instants(
     The closing ``speeds`` may be given, if they are known.
     """
     size = amplitude * table.bounds[1]
-    found = [
+    orbits = [
         (tau, u)
         for u in (closing_speeds(ball, n) if speeds is None else speeds)
         for tau in around(lambda tau, u=u: amplitude * table(tau, 1) - (u - n * np.pi), size)
     ]
-    return np.reshape(found, (-1, 2))
+    return np.reshape(orbits, (-1, 2))
 
 
 def folds(n: int, table: Table, speeds: NDArray) -> NDArray:
@@ -75,38 +75,38 @@ def folds(n: int, table: Table, speeds: NDArray) -> NDArray:
     """
     rises = around(lambda tau: table(tau, 2), table.bounds[2])
     rises = rises[(table(rises, 1) > 0) & (table(rises, 3) < 0)]
-    found = [((u - n * np.pi) / table(tau, 1), tau, u) for u in speeds for tau in rises]
-    return np.reshape(found, (-1, 3))
+    saddle_nodes = [((u - n * np.pi) / table(tau, 1), tau, u) for u in speeds for tau in rises]
+    return np.reshape(saddle_nodes, (-1, 3))
 
 
-def others(found: NDArray, speeds: NDArray, tau: float, u: float) -> NDArray:
+def others(rows: NDArray, speeds: NDArray, tau: float, u: float) -> NDArray:
     """Leave out the row (..., τ, u) to which an impact belongs, if there is one.
 
     The impact belongs to the nearest of the closing ``speeds``, and to the nearest phase.
     """
-    if not len(found):
-        return found
+    if not len(rows):
+        return rows
     own = speeds[np.argmin(np.abs(speeds - u))]
-    apart = np.abs((found[:, -2] - tau + np.pi) % PERIOD - np.pi)
-    apart = np.where(found[:, -1] == own, apart, np.inf)
-    return found[(np.arange(len(found)) != np.argmin(apart)) | np.isinf(apart)]
+    apart = np.abs((rows[:, -2] - tau + np.pi) % PERIOD - np.pi)
+    apart = np.where(rows[:, -1] == own, apart, np.inf)
+    return rows[(np.arange(len(rows)) != np.argmin(apart)) | np.isinf(apart)]
 
 
-def same_side(found: NDArray, ball: Ball, table: Table, side: int) -> NDArray:
+def same_side(rows: NDArray, ball: Ball, table: Table, side: int) -> NDArray:
     """Select the rows (τ, u) where 1 - tr/(1 + det) has the sign ``side``."""
-    tau, u = found.T + 1j * H * np.array([[0.0], [1.0]])
+    tau, u = rows.T + 1j * H * np.array([[0.0], [1.0]])
     slope = np.imag((1 + ball.signature(u).restitution) * u) / H if u.size else u.real
-    return found[np.sign(-table(tau.real, 2) * slope) == side]
+    return rows[np.sign(-table(tau.real, 2) * slope) == side]
 
 
-def named(found: NDArray) -> str:
+def named(orbits: NDArray) -> str:
     """Text of orbits (τ, u): the phase and the closing speed of each, but of four at most."""
-    texts = [f"u = {u:.6g} at phase {np.pi - (np.pi - tau) % PERIOD:.6g}" for tau, u in found[:4]]
-    return "; ".join([*texts, *(["…"] if len(found) > 4 else [])])
+    texts = [f"u = {u:.6g} at phase {np.pi - (np.pi - tau) % PERIOD:.6g}" for tau, u in orbits[:4]]
+    return "; ".join([*texts, *(["…"] if len(orbits) > 4 else [])])
 
 
-def where_begun(found: NDArray) -> str:
+def where_begun(saddle_nodes: NDArray) -> str:
     """Text of saddle-nodes (Λ, τ, u): where other orbits begin, but of four at most."""
-    found = found[np.argsort(found[:, 0])]
-    texts = [f"near Λ = {amplitude:.6g} with u = {u:.6g}" for amplitude, _, u in found[:4]]
-    return ", ".join([*texts, *(["…"] if len(found) > 4 else [])])
+    saddle_nodes = saddle_nodes[np.argsort(saddle_nodes[:, 0])]
+    texts = [f"near Λ = {amplitude:.6g} with u = {u:.6g}" for amplitude, _, u in saddle_nodes[:4]]
+    return ", ".join([*texts, *(["…"] if len(saddle_nodes) > 4 else [])])

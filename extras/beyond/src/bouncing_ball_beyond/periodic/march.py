@@ -126,7 +126,7 @@ class Solution(NamedTuple):
     ----------
     z : array, shape (rows, N)
         Unknowns.
-    found : array of bool, shape (rows,)
+    converged : array of bool, shape (rows,)
         Whether the method converged.
     tangent : array, shape (rows, N)
         Tangents of the solution curves, scaled to normal · tangent = 1.
@@ -135,7 +135,7 @@ class Solution(NamedTuple):
     """
 
     z: NDArray
-    found: NDArray
+    converged: NDArray
     tangent: NDArray
     linear: LinearizedLegs
 
@@ -183,12 +183,12 @@ def newton(
         step = np.where((exact & ~(moved < NOISE))[:, np.newaxis], 0.0, step)
         z = z + step
         # Converged: the step is small, or the residual consists of rounding errors.
-        found = (moved < TOLERANCE) | exact
-        if (found | np.isnan(moved)).all():
+        converged = (moved < TOLERANCE) | exact
+        if (converged | np.isnan(moved)).all():
             break
     # If z is so large that the times have no digits left, the step is small without convergence.
-    found &= defect < 1e-7
-    return Solution(z, found, solution[..., 1], linear)
+    converged &= defect < 1e-7
+    return Solution(z, converged, solution[..., 1], linear)
 
 
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
@@ -200,11 +200,11 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
     """
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
-    found = np.zeros(len(z), bool)
+    converged = np.zeros(len(z), bool)
     todo = np.arange(len(z))
     part = equations
     gradient, step = np.ones((2, *z.shape))
-    slow = ~found
+    slow = ~converged
     size_before = np.ones(len(z))
     for _ in range(iterations):
         linear = part.linearized(z[todo])
@@ -220,8 +220,8 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
         z[todo] += step
         tangent[todo] = solution[..., 1]
         moved = (np.abs(step) / part.sizes(z[todo])).max(axis=1)
-        found[todo] = moved < np.where(slow, SPECIAL, TOLERANCE)
-        going = ~found[todo] & np.isfinite(moved)
+        converged[todo] = moved < np.where(slow, SPECIAL, TOLERANCE)
+        going = ~converged[todo] & np.isfinite(moved)
         slow = (moved >= FAST * size_before[todo])[going] | (len(equations.along) > 1)
         size_before[todo] = moved
         step = step[going]
@@ -229,7 +229,7 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
         if not todo.size:
             break
         part = equations.rows(todo)
-    return Solution(z, found, tangent, equations.linearized(z))
+    return Solution(z, converged, tangent, equations.linearized(z))
 
 
 class Start(NamedTuple):
@@ -262,7 +262,7 @@ class Start(NamedTuple):
 
     def take(self, which: Any) -> "Start":
         """Select rows."""
-        taken = {name: each[which] for name, each in self._asdict().items() if np.ndim(each)}
+        taken = {name: values[which] for name, values in self._asdict().items() if np.ndim(values)}
         return self._replace(equations=self.equations.rows(which), **taken)
 
 
@@ -301,7 +301,7 @@ class Points(NamedTuple):
 
     def take(self, which: Any) -> "Points":
         """Select rows."""
-        return Points(*(each[which] for each in self))
+        return Points(*(rows[which] for rows in self))
 
 
 def points_at(
@@ -405,13 +405,13 @@ def march(
             if ending.any():
                 inner = _before_end(equations, here, there, normal)
             # Before an end the determinant is positive, so tr/(1 + det) has no pole.
-            angles = np.arctan([each.tests[:, 1] - 1 for each in (here, inner)])
+            angles = np.arctan([orbits.tests[:, 1] - 1 for orbits in (here, inner)])
             turned = np.abs(angles[1] - angles[0])
             cosine = _cosine(there, here, units)
             missed = np.linalg.norm((there.z - guess) / units, axis=1)
             values = there.z[:, equations.size :]
             inside = ((values >= low) & (values <= high)).all(axis=1)
-        good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
+        good = solution.converged & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
         good &= (turned < LARGEST_TURN) | (length < 1e-6)
         easy = (cosine > 0.99) & (turned < LARGEST_TURN / 2)
         moved = zip(here, there, strict=True)
@@ -467,7 +467,7 @@ def _before_end(equations: OrbitEquations, here: Points, there: Points, normal: 
     share = (1 - BEFORE_END) * share[:, np.newaxis]
     solution = newton(equations, here.z + share * (there.z - here.z), normal)
     inner = points_at(equations, solution.z, solution.tangent, solution.linear)
-    inner.tests[~solution.found] = np.nan
+    inner.tests[~solution.converged] = np.nan
     return same_sign(here, inner)
 
 
@@ -506,4 +506,4 @@ def _path_of(path: list[Points], end: str, equations: OrbitEquations, units: NDA
         turns = np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
         z = equations.later(path[0].z, turns)
         path = [*(path[:-1] if ahead else path), path[0]._replace(z=z)]
-    return Points(*(np.concatenate(each) for each in zip(*path, strict=True)))
+    return Points(*(np.concatenate(parts) for parts in zip(*path, strict=True)))

@@ -103,14 +103,14 @@ def orbit(
     effort = Effort("orbit", most, progress, balls=amplitudes.size)
     equations = OrbitEquations(row, 1, periods, table=table, effort=effort)
     sign = 1 if side == "stable" else -1
-    found, admissible = near_instants(equations, amplitudes.astype(float), sign)
+    orbit_of_row, admissible = near_instants(equations, amplitudes.astype(float), sign)
     missing = np.flatnonzero(~admissible)
     if missing.size:
-        near = [found[i] for i in missing]
+        near = [orbit_of_row[i] for i in missing]
         searched = _searched(equations.rows(missing), amplitudes[missing], sign, near)
-        for i, each in zip(missing, searched, strict=True):
-            found[i] = each
-    return found if shape else alone(found[0])
+        for i, orbit_or_reason in zip(missing, searched, strict=True):
+            orbit_of_row[i] = orbit_or_reason
+    return orbit_of_row if shape else alone(orbit_of_row[0])
 
 
 def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
@@ -125,33 +125,33 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     4. an OrbitNotFound, or a SearchEnded.
     """
     shortest, admissible = shortest_contacts(equations, amplitude, sign)
-    found: list = [*shortest]
-    ended = np.array([isinstance(each, SearchEnded) for each in found])
+    orbit_of_row: list = [*shortest]
+    ended = np.array([isinstance(orbit_or_reason, SearchEnded) for orbit_or_reason in orbit_of_row])
     missing = np.flatnonzero(~admissible & ~ended)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
     # Limits are slow to find if free impacts do not end, because the ball creeps off the table.
     ending = missing[ends[missing]]
     rows = equations.rows(ending)
     lowest = limits_of(rows) if len(ending) else []
-    folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
-    others = {i: each.others for i, each in zip(ending, lowest, strict=True)}
+    folds = {i: limits.saddle_node for i, limits in zip(ending, lowest, strict=True)}
+    others = {i: limits.others for i, limits in zip(ending, lowest, strict=True)}
     for i in missing:
         fold = folds.get(i)
         why = "none is found on this side of the saddle-node"
         if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
             why = f"below the saddle-node at Λ = {fold.amplitude:.10g}{_of_others(others[i])}"
-        elif near[i] or found[i]:
-            found[i] = near[i] or found[i]
+        elif near[i] or orbit_of_row[i]:
+            orbit_of_row[i] = near[i] or orbit_of_row[i]
             continue
         elif not ends[i]:
             why = f"none is found; {ENDLESS}"
         ball = equations.ball.rows(i)
         values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
-        found[i] = OrbitNotFound(
+        orbit_of_row[i] = OrbitNotFound(
             f"no {np.ravel(equations.periods)[i]}-T orbit at Λ = {amplitude[i]:.10g} for"
             f" {type(ball).__name__}({values}): {why}"
         )
-    return found
+    return orbit_of_row
 
 
 def _of_others(folds: NDArray) -> str:
@@ -207,8 +207,8 @@ def orbits(
     Examples
     --------
     >>> from bouncing_ball_beyond import Rigid
-    >>> found = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
-    >>> [(round(each.max_height, 3), each.stable) for each in found]
+    >>> in_three_periods = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
+    >>> [(round(orbit.max_height, 3), orbit.stable) for orbit in in_three_periods]
     [(8.209, True), (8.007, False)]
     """
     check_one_ball(ball)
@@ -220,5 +220,7 @@ def orbits(
     z = all_orbits(equations, amplitude)
     if not len(z):
         return []
-    found = [equations.orbit(row) for row in z[equations.admissible(z)]]
-    return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
+    admissible = [equations.orbit(row) for row in z[equations.admissible(z)]]
+    return sorted(
+        admissible, key=lambda orbit: (round(np.sum(orbit.contact_duration), 9), orbit.times[0])
+    )

@@ -29,7 +29,7 @@ def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple
     fields = ball.parameters
     broadcast = broadcast_named([*fields.items(), *others.items()])
     shape = broadcast[0].shape if broadcast else ()
-    arrays = [np.array(each).reshape(-1) for each in broadcast]
+    arrays = [np.array(values).reshape(-1) for values in broadcast]
     names = list(fields)
     row = ball.at(**dict(zip(names, arrays[: len(names)], strict=True))) if names else ball
     return row, arrays[len(names) :], shape
@@ -94,14 +94,14 @@ def near_instants(
     equations.spend(0, "orbits near those of instantaneous impacts")
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign, equations.table)
     solution = newton(equations, guess, iterations=40)
-    good = solution.found & (sign * (1 - equations.turn(solution.linear)) > -AT_FOLD)
+    good = solution.converged & (sign * (1 - equations.turn(solution.linear)) > -AT_FOLD)
     z = np.where(good[:, np.newaxis], solution.z, guess)
     # The first impact is in the first period of the table.
     z = equations.later(z, -np.floor(z[:, 0] / (2 * np.pi)))
     good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > 0)
     rows = enumerate(zip(good, z, strict=True))
-    found = [single(equations, i).orbit(row) if is_good else None for i, (is_good, row) in rows]
-    return found, good & equations.admissible(z, solution.linear)
+    orbits = [single(equations, i).orbit(row) if is_good else None for i, (is_good, row) in rows]
+    return orbits, good & equations.admissible(z, solution.linear)
 
 
 def shortest_contacts(
@@ -112,21 +112,23 @@ def shortest_contacts(
     Orbits that a ball follows come first. Returns the orbit of each row, None, or a SearchEnded,
     and whether a ball follows the orbit, shape (rows,).
     """
-    found: list[PeriodicOrbit | SearchEnded | None] = []
+    orbit_of_row: list[PeriodicOrbit | SearchEnded | None] = []
     whole = equations.effort or Effort("", np.inf)
-    for i, each in enumerate(amplitude):
+    for i, row_amplitude in enumerate(amplitude):
         effort = replace(whole, spent=0, balls=1, tried=[*whole.tried])
         alone = replace(single(equations, i), effort=effort)
         try:
-            orbits = [alone.orbit(z) for z in all_orbits(alone, float(each))]
+            orbits = [alone.orbit(z) for z in all_orbits(alone, float(row_amplitude))]
         except SearchEnded as reason:
-            found.append(reason)
+            orbit_of_row.append(reason)
             continue
         whole.told = effort.told
-        on_side = [each for each in orbits if sign * (1 - each.turn) > -AT_FOLD]
-        on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
-        found.append(on_side[0] if on_side else None)
-    return found, np.array([isinstance(each, PeriodicOrbit) and each.admissible for each in found])
+        on_side = [orbit for orbit in orbits if sign * (1 - orbit.turn) > -AT_FOLD]
+        on_side.sort(key=lambda orbit: (not orbit.admissible, orbit.contact_duration))
+        orbit_of_row.append(on_side[0] if on_side else None)
+    return orbit_of_row, np.array(
+        [isinstance(orbit, PeriodicOrbit) and orbit.admissible for orbit in orbit_of_row]
+    )
 
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:
@@ -250,16 +252,16 @@ def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
         return np.abs(equations.split(z)[0][..., 1:]).max(axis=1)
 
     largest = 2 * sizes(z).max(axis=0, initial=0.0)
-    found = [z[:0]]
+    solutions = [z[:0]]
     for _ in range(30):
         if not len(z):
             break
         solution = newton(equations, z, iterations=1)
-        found.append(solution.z[solution.found])
+        solutions.append(solution.z[solution.converged])
         # The comparison is false for NaN.
         inside = (sizes(solution.z) <= largest).all(axis=1)
-        z = solution.z[inside & ~solution.found]
-    return np.concatenate(found)
+        z = solution.z[inside & ~solution.converged]
+    return np.concatenate(solutions)
 
 
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:

@@ -96,7 +96,7 @@ def divided(equations: OrbitEquations, path: Points) -> Points:
         normal = (chords / units**2)[step]
         solution = newton(equations, path.z[i - 1 + step] + share * chords[step], normal)
         there = points_at(equations, solution.z, solution.tangent, solution.linear)
-        opposite = np.where(solution.found, there.tests[:, pair] * np.sign(values[i]), 0.0)
+        opposite = np.where(solution.converged, there.tests[:, pair] * np.sign(values[i]), 0.0)
         best = int(opposite.argmin())
         if opposite[best] < 0:
             at = i + step[best]
@@ -145,11 +145,11 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
     normal = chord / units / np.sum(chord**2, axis=1, keepdims=True)
     slopes = crossings.slopes / np.sum(normal * crossings.slopes, axis=2, keepdims=True)
     weights = values.copy()
-    each = np.arange(len(chord))
-    place = np.array([0 * each, 0 * each + 1.0])
-    latest = 0 * each - 1
+    rows = np.arange(len(chord))
+    place = np.array([0 * rows, 0 * rows + 1.0])
+    latest = 0 * rows - 1
     # The equations are singular at a period halving: use `halved_at`.
-    found = crossings.kind != "period halving"
+    is_located = crossings.kind != "period halving"
     singular = np.array([ends_at(name, None) for name in crossings.kind])
     z = ends[0]
     nearest = ends[0].copy()
@@ -161,41 +161,41 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         solution = newton(equations, guess, normal)
         if equations.kind:
             # At the end of a curve the equations are singular, but the curve is smooth.
-            lost = ~solution.found & singular
+            lost = ~solution.converged & singular
             solution.z[lost] = guess[lost]
             solution.tangent[lost] = slopes[0, lost]
-            solution.found[lost] = True
+            solution.converged[lost] = True
             solution = solution._replace(linear=equations.linearized(solution.z))
-        found &= solution.found
-        z = np.where(found[:, np.newaxis], solution.z, guess)
+        is_located &= solution.converged
+        z = np.where(is_located[:, np.newaxis], solution.z, guess)
         value = _tests_of(crossings.kind, equations, solution)
         nearer = np.abs(value) < least
         nearest[nearer] = z[nearer]
         least[nearer] = np.abs(value)[nearer]
         side = (value * values[1] > 0).astype(int)
-        ratio = 1 - value / values[side, each]
+        ratio = 1 - value / values[side, rows]
         again = np.where(ratio > 0, ratio, 0.5)
-        weights[1 - side, each] *= np.where(side == latest, again, 1.0)
-        moved = np.abs(place[0] + part * step - place[side, each])
-        place[side, each] = place[0] + part * step
-        values[side, each] = value
-        weights[side, each] = value
-        ends[side, each] = solution.z
-        slopes[side, each] = solution.tangent
+        weights[1 - side, rows] *= np.where(side == latest, again, 1.0)
+        moved = np.abs(place[0] + part * step - place[side, rows])
+        place[side, rows] = place[0] + part * step
+        values[side, rows] = value
+        weights[side, rows] = value
+        ends[side, rows] = solution.z
+        slopes[side, rows] = solution.tangent
         latest = side
-        if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
+        if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~is_located).all():
             break
     # Use the iterate with the smallest test function, because rounding errors may move later
     # iterates away: at the ends of curves the equations are singular.
     largest = np.abs(crossings.values).max(axis=0)
-    found &= least < 1e-6 * np.maximum(largest, 0.1)
+    is_located &= least < 1e-6 * np.maximum(largest, 0.1)
     # A saddle with the real multipliers μ and 1/μ is neutral, and no bifurcation. On a curve of
     # saddle-nodes or period doublings, the multipliers are equal: a resonance.
     pair = crossings.kind == "Neimark-Sacker"
     if pair.any() and equations.kind not in MULTIPLIERS:
         there = equations.rows(pair)
-        found[pair] &= np.abs(there.turn(there.linearized(nearest[pair]))) < 1
-    return nearest, found
+        is_located[pair] &= np.abs(there.turn(there.linearized(nearest[pair]))) < 1
+    return nearest, is_located
 
 
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
@@ -208,7 +208,7 @@ def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
     half, near = equations.halved(ends)
     doubling = replace(half, kind="period doubling")
     solution = newton(doubling, near.mean(axis=0, keepdims=True), iterations=20)
-    if not solution.found[0]:
+    if not solution.converged[0]:
         return None
     twice = half.doubled(solution.z)[1]
     z = equations.later(twice, np.round((ends[0, 0] - twice[0, 0]) / (2 * np.pi)))[0]

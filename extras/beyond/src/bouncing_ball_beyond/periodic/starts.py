@@ -127,7 +127,7 @@ def _fold_start(task: Task) -> Start:
     farthest = np.fmax(task.goal, task.other), np.fmin(task.goal, task.other)
     goal = np.where(away > 0, *farthest)
     reasons = np.full(len(task.z), "", object)
-    reasons[~near.found] = "no orbit is found next to the saddle-node"
+    reasons[~near.converged] = "no orbit is found next to the saddle-node"
     on_side = away * (goal - task.z[:, -1]) > 0
     text = "the orbits of the saddle-node at {place} are {side} it"
     _refuse(reasons, ~on_side, task, text, away)
@@ -148,7 +148,7 @@ def _grazing_start(task: Task) -> Start:
     # Start one step away from the grazing orbit, where the added impact has the speed 0.
     start = _beside(more, origin, direction, 1e-3)
     away = start.z[:, -1] - origin[:, -1]
-    _refuse(reasons, ~start.found, task, "the orbits with one impact more are not found", away)
+    _refuse(reasons, ~start.converged, task, "the orbits with one impact more are not found", away)
     on_side = away * (task.goal - task.z[:, -1]) > 0
     text = "the orbits with one impact more are {side} the grazing at {place}"
     _refuse(reasons, ~on_side, task, text, away)
@@ -177,7 +177,7 @@ def _doubled_start(task: Task) -> Start:
     units = twice.scales(origin)
     direction = flip(task.equations, task.z)
     pair = twice.rows(np.tile(np.arange(rows), 2))
-    origins, directions = (np.tile(each, (2, 1)) for each in (origin, direction))
+    origins, directions = (np.tile(vectors, (2, 1)) for vectors in (origin, direction))
     start = origin.copy()
     step = np.full(rows, 0.02)
     good = np.zeros(rows, bool)
@@ -191,7 +191,7 @@ def _doubled_start(task: Task) -> Start:
             ratios = np.stack([away[0] / away[1], lost[0] / lost[1]])
         # Where the branch bends, the distance of the orbits on the planes is larger than the step.
         bend = np.linalg.norm(change[0] / units, axis=1) / step
-        new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < np.hypot(1, 0.2))
+        new = ~good & solution.converged.reshape(2, rows).all(axis=0) & (bend < np.hypot(1, 0.2))
         new &= ((ratios > 3) & (ratios < 5.5)).all(axis=0) & (np.abs(lost[0]) < 0.3)
         start[new] = solution.z[:rows][new]
         good |= new
@@ -216,7 +216,7 @@ def _doubled_start(task: Task) -> Start:
         step = np.where(short, 0.3 * step * np.sqrt(np.abs(share)), step)
         solution = _beside(twice, origin, direction, step[:, np.newaxis])
         start[short] = solution.z[short]
-        reasons[short & ~solution.found] = missing
+        reasons[short & ~solution.converged] = missing
     return Start(twice, start, start - origin, task.goal, reasons, step=step, origin=origin)
 
 

@@ -53,7 +53,7 @@ def switch_of(equations: OrbitEquations, z: NDArray) -> tuple[NDArray, NDArray, 
     before = z[equations.surface_share(z) > -SWITCHED]
     surface = at_surface(equations)
     near = newton(surface, z[-1:])
-    if not (near.found[0] and len(before)):
+    if not (near.converged[0] and len(before)):
         return None
     along = tangents(surface, near.z)
 
@@ -87,5 +87,5 @@ def beyond_switch(
     T = ball.first_release(x[..., 0], x[..., 1], amplitude, table=table)
     guess[:, 2 : equations.size : equations.unknowns] = T
     start = newton(equations, guess, _without_durations(equations, ahead / units))
-    reasons = np.where(start.found, "", "no orbit with the other end is found")
+    reasons = np.where(start.converged, "", "no orbit with the other end is found")
     return Start(equations, start.z, start.tangent, goal, reasons, STEP, switch)

@@ -722,7 +722,7 @@ class SpringDamper(Ball):
         """
         parameters = self.parameters
         every = np.broadcast_arrays(tau, u, amplitude, *parameters.values())
-        tau, u, amplitude, *others = (each.ravel() for each in every)
+        tau, u, amplitude, *others = (values.ravel() for values in every)
         ball = self.at(**dict(zip(parameters, others, strict=True)))
         return ball.leaves(tau, u, amplitude, table)[0].reshape(every[0].shape)
 
@@ -818,7 +818,7 @@ def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Tabl
             rows = rows.take(going, axis=1)
             ball = ball.rows(going)
     for i in todo:
-        duration[i], speed[i] = one_ball.release(*(each[i] for each in given))
+        duration[i], speed[i] = one_ball.release(*(values[i] for values in given))
     return duration, speed
 
 

@@ -66,9 +66,9 @@ class Force(Ball):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number, 2, 4, 6, ...")
         if self.lag is not None and not (callable(self.lag) and self.release == "force"):
             raise ValueError(f"lag = {brief(self.lag)}: must be a function, with release='force'")
-        for name, each in (("values", self.values), ("units", self.units)):
-            if not isinstance(each, Mapping):
-                raise ValueError(f"{name} = {brief(each)}: must be a dict by name of parameter")
+        for name, mapping in (("values", self.values), ("units", self.units)):
+            if not isinstance(mapping, Mapping):
+                raise ValueError(f"{name} = {brief(mapping)}: must be a dict by name of parameter")
         numbers = {
             name: checked(name, value, -np.inf, np.inf, low_allowed=False)
             for name, value in self.values.items()
@@ -132,7 +132,9 @@ class Force(Ball):
 
     def _with(self, **new: Any) -> Any:
         law = object.__new__(type(self))
-        vars(law).update({each.name: getattr(self, each.name) for each in fields(self)}, **new)
+        vars(law).update(
+            {attribute.name: getattr(self, attribute.name) for attribute in fields(self)}, **new
+        )
         return law
 
     @cached_property
@@ -183,13 +185,15 @@ class Force(Ball):
         p, energy = self.energies
         energy = np.maximum.accumulate(energy - load * p)
         x, y = (
-            np.log(np.maximum(each, np.finfo(float).tiny)).reshape(len(p), -1)
-            for each in (energy, p)
+            np.log(np.maximum(quantity, np.finfo(float).tiny)).reshape(len(p), -1)
+            for quantity in (energy, p)
         )
         u = np.broadcast_to(u, np.broadcast_shapes(np.shape(u), p.shape[1:]))
         wanted = np.log(u * u / 2).reshape(-1, x.shape[1])
-        found = (np.interp(*each, right=np.nan) for each in zip(wanted.T, x.T, y.T, strict=True))
-        return np.exp(np.stack([*found], axis=-1)).reshape(u.shape)[()]
+        logarithms = (
+            np.interp(*columns, right=np.nan) for columns in zip(wanted.T, x.T, y.T, strict=True)
+        )
+        return np.exp(np.stack([*logarithms], axis=-1)).reshape(u.shape)[()]
 
     def check_stops(self, u: Values) -> None:
         """Raise ValueError if the force f(p, 0) stops no balls with the closing speeds u."""
@@ -247,7 +251,7 @@ class Force(Ball):
             # The force has no value beyond a wall, and few digits next to it.
             inside = np.isfinite(total) & (step > NEAREST * here) & (energies[-1] < HIGHEST)
             here, f, slope = (
-                np.where(inside, *each) for each in ((there, here), (after, f), (bend, slope))
+                np.where(inside, *pair) for pair in ((there, here), (after, f), (bend, slope))
             )
             most = np.maximum(most, np.abs(f))
             depths.append(here)

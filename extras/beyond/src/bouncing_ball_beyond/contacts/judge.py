@@ -159,9 +159,9 @@ def _check_call(law: Force) -> None:
                 f" ({reason})"
             ) from None
         if not isinstance(value, np.ndarray) or value.shape != p.shape:
-            found = np.shape(value) if isinstance(value, np.ndarray) else type(value).__name__
+            returned = np.shape(value) if isinstance(value, np.ndarray) else type(value).__name__
             raise ValueError(
-                f"{name}: must return an array of the shape of p and v, {p.shape}, not {found}"
+                f"{name}: must return an array of the shape of p and v, {p.shape}, not {returned}"
             )
         # A deeper point, and the same points in reverse, between two equal calls.
         with np.errstate(all="ignore"):

@@ -169,11 +169,11 @@ class ForceLaw(Force):
         force = origin.force_at(p, v, 1.3, {**origin.values, "u": 1.0})
         given = dict(zip(self.values, values[..., np.newaxis], strict=True))
         for change in (np.ones((2, 1)), np.eye(2)):
-            found = change @ np.linalg.pinv(powers @ change)
-            explained = np.tensordot(powers @ found, logarithms, 1)
+            inverse = change @ np.linalg.pinv(powers @ change)
+            explained = np.tensordot(powers @ inverse, logarithms, 1)
             if not np.allclose(explained, logarithms, ALIKE, ALIKE):
                 continue
-            scales = np.exp(np.tensordot(found, logarithms, 1))
+            scales = np.exp(np.tensordot(inverse, logarithms, 1))
             length, time = scales[..., np.newaxis]
             speed = length / time
             scaled = self.force_at(p * length, v * speed, 1.3 * speed / time, given | {"u": speed})
@@ -263,10 +263,10 @@ class ForceLaw(Force):
         length, time = self._scales
         speed = u * (time / length)
         known = self._origin.known_signature(speed.real)
-        found = known[:4]
+        quantities = known[:4]
         if np.iscomplexobj(u):
-            found = found + 1j * known[4:8] * (u.imag / u.real)
-        return Signature(found[0], *(time * each for each in found[1:]))
+            quantities = quantities + 1j * known[4:8] * (u.imag / u.real)
+        return Signature(quantities[0], *(time * quantity for quantity in quantities[1:]))
 
     def known_signature(self, u: Values) -> NDArray:
         """Signature of one ball, its derivatives, and T at real speeds, shape (9, ...).
@@ -278,18 +278,18 @@ class ForceLaw(Force):
         if self.kinks:
             return self._remembered(u)
         number = np.floor(np.log(u) / np.log(SIGNATURE_FACTOR))
-        found = np.full((9, *u.shape), np.nan)
+        rows = np.full((9, *u.shape), np.nan)
         for k in np.unique(number[np.isfinite(number)]):
             at = number == k
             if k not in self._ranges:
                 self._ranges[k] = self._range(k)
             coefficients = self._ranges[k]
             if coefficients is None:
-                found[:, at] = self._remembered(u[at])
+                rows[:, at] = self._remembered(u[at])
             else:
                 x = 2 * (np.log(u[at]) / np.log(SIGNATURE_FACTOR) - k) - 1
-                found[:, at] = chebyshev.chebval(x, coefficients)
-        return found
+                rows[:, at] = chebyshev.chebval(x, coefficients)
+        return rows
 
     def _remembered(self, u: NDArray) -> NDArray:
         """Compute :meth:`known_signature` at the speeds that were not asked for before."""
@@ -360,15 +360,15 @@ class ForceLaw(Force):
         at_rest = {**self.values, "tau": 0.0, "u": u, "amplitude": 0.0, "gravity": 0.0}
         at_rest["table"] = SINE
         motion = ContactMotion(self.root, self.force_at, self._release, (), at_rest, {})
-        found = []
+        pairs = []
         for gauss in WHOLE:
             order = gauss.nodes.size
             if gauss is finest or np.abs(coefficients[order - 2 :, 1]).max() < SPARE * u:
                 nodes = legendre.legval(2 * gauss.nodes - 1, coefficients)[..., np.newaxis]
                 push = rates(motion, nodes)[1][:, 0] * T / u
                 matrix = linearize(motion._replace(gauss=gauss), nodes, T).matrix()[0]
-                found.append((push, np.linalg.inv(matrix)))
-        return found
+                pairs.append((push, np.linalg.inv(matrix)))
+        return pairs
 
     # Multiples of the first speed and load for which the force was judged.
     _judged = cached_property(lambda self: [1.0])

@@ -82,8 +82,12 @@ def law_of_impact(
             ("speed", speed, np.inf),
         )
     )
-    found = {each: _damping_and_duration(law_of, each) for each in np.unique(r)}
-    damping, unit = np.moveaxis(np.array([found[each] for each in r.flat]), -1, 0)
+    damping_and_duration = {
+        coefficient: _damping_and_duration(law_of, coefficient) for coefficient in np.unique(r)
+    }
+    damping, unit = np.moveaxis(
+        np.array([damping_and_duration[coefficient] for coefficient in r.flat]), -1, 0
+    )
     length = duration_of_impact * v / unit.reshape(r.shape)
     return law_of(damping.reshape(r.shape)[()], length[()], v[()])
 

@@ -37,7 +37,7 @@ SMALLEST_JUMP = 1e-6
 Square roots change by 1e-7 of the force on the shortest parts of segments.
 """
 
-FOUR, WEIGHTS_OF_FOUR = (each / 2 for each in legendre.leggauss(4))
+FOUR, WEIGHTS_OF_FOUR = (numbers / 2 for numbers in legendre.leggauss(4))
 FOUR = FOUR + 0.5
 """Gauss nodes and weights on [0, 1]."""
 
@@ -95,7 +95,7 @@ def divisions(function: Callable, points: NDArray, usual: float) -> Iterator[Div
         inner = function(here[..., np.newaxis] + along * (FOUR + 1j * H))
         expected = inner.imag @ WEIGHTS_OF_FOUR / H
         change = function(segments[1]) - function(here)
-        size = np.abs([function(each) for each in whole]).max(axis=0)
+        size = np.abs([function(end) for end in whole]).max(axis=0)
         rounded = (ROUNDING if division else ALIKE[1]) * np.maximum(size, usual)
         wrong = np.abs(change - expected) > ALIKE[0] * np.abs(change) + rounded
         yield Division(segments, whole, inner, change, expected, size, wrong)
@@ -167,7 +167,7 @@ def roots(
             " orbits"
         )
     kept = [~part.wrong for part in parts[:-1]] + [np.full(parts[-1].wrong.shape, True)]
-    x, f, along = (np.concatenate(each) for each in zip(*map(_nodes, parts, kept), strict=True))
+    x, f, along = (np.concatenate(nodes) for nodes in zip(*map(_nodes, parts, kept), strict=True))
     order = np.argsort(x)
     order = order[np.isfinite(f[order])]
     x, f, along = x[order], f[order], along[order]
@@ -184,16 +184,16 @@ def roots(
     single, value = _roots_between(function, starts, ends)
     # The sign also changes at a pole or a jump, which are not roots.
     single = single[np.abs(value) <= 1e-6 * size]
-    found = np.sort(np.concatenate([single, top[np.abs(height) <= DOUBLE * size]]))
-    return found[(found >= low - DOUBLE * high) & (found <= high + DOUBLE * high)]
+    all_roots = np.sort(np.concatenate([single, top[np.abs(height) <= DOUBLE * size]]))
+    return all_roots[(all_roots >= low - DOUBLE * high) & (all_roots <= high + DOUBLE * high)]
 
 
 def _roots_between(function: Callable, starts: NDArray, ends: NDArray) -> tuple[NDArray, NDArray]:
     """Roots of a function in brackets, and its values there."""
     if not starts.size:
         return starts, starts
-    found = find_root(function, (starts, ends))
-    return found.x, found.f_x
+    root = find_root(function, (starts, ends))
+    return root.x, root.f_x
 
 
 def _nodes(part: Division, kept: NDArray) -> tuple[NDArray, NDArray, NDArray]:

@@ -184,12 +184,12 @@ class Guess(NamedTuple):
 
     def corrected(self, missing: NDArray) -> NDArray:
         """Estimate the correction of F from the residual ``missing``, shape (nodes, ..., rows)."""
-        found = np.empty_like(missing)
+        correction = np.empty_like(missing)
         for k, inverse in enumerate(self.inverses):
             at = self.which == k
             part = missing[..., at]
-            found[..., at] = (inverse @ part.reshape(len(part), -1)).reshape(part.shape)
-        return found
+            correction[..., at] = (inverse @ part.reshape(len(part), -1)).reshape(part.shape)
+        return correction
 
 
 class Rows(NamedTuple):
@@ -364,7 +364,7 @@ class Panel(NamedTuple):
 
     def of(self, rows: NDArray) -> "Panel":
         """Select rows."""
-        nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
+        nodes, end = (tuple(y[..., rows] for y in states) for states in self[:2])
         return Panel(nodes, end, *(x[..., rows] for x in self[2:]))
 
     def states(self, places: NDArray, gauss: Gauss) -> NDArray:
@@ -423,7 +423,7 @@ class LinearizedPanel(NamedTuple):
 
         The matrix is dimensionless.
         """
-        by_q, by_v, by_t, bend = (each.transpose(2, 0, 1) for each in self[:4])
+        by_q, by_v, by_t, bend = (coefficients.transpose(2, 0, 1) for coefficients in self[:4])
         h = self.h[:, np.newaxis, np.newaxis]
         once = h * self.gauss.integrals
         twice = h * h * self.gauss.twice
@@ -449,7 +449,9 @@ def linearize(motion: ContactMotion, nodes: tuple, h: NDArray) -> LinearizedPane
     by_q = bend * (a - along.real) - lever * lever * along.imag / H
     by_v = -lever * motion.force(p, v + 1j * H, a, given).imag / H
     by_t = lever * felt * given["amplitude"] * waveform(given)(given["tau"] + t, 3)
-    by_q, by_v, by_t, bend = (each[:, np.newaxis] for each in (by_q, by_v, by_t, bend))
+    by_q, by_v, by_t, bend = (
+        coefficients[:, np.newaxis] for coefficients in (by_q, by_v, by_t, bend)
+    )
     return LinearizedPanel(by_q, by_v, by_t, bend, h, motion.gauss)
 
 
@@ -584,7 +586,9 @@ def carried(
     rate = v0 + linear.integrated(push)
     pace = linear.bend * (q0 + linear.integrated(rate))
     weights = motion.gauss.weights
-    return by + np.array([h * np.tensordot(weights, each, 1) for each in (rate, push, pace)])
+    return by + np.array(
+        [h * np.tensordot(weights, integrand, 1) for integrand in (rate, push, pace)]
+    )
 
 
 def _resolved(motion: ContactMotion, panel: Panel, size: NDArray) -> tuple[NDArray, NDArray]:
@@ -673,10 +677,10 @@ def _maxima(
 
     x = np.concatenate([[0.0], motion.gauss.nodes, [1.0]])
     bracket = x[node], x[node + 1], x[node + 2]
-    found = elementwise.find_minimum(depth, bracket, args=(np.arange(row.size),))
+    minimum = elementwise.find_minimum(depth, bracket, args=(np.arange(row.size),))
     # Inside a panel the error of the motion is of the size of the last coefficients.
-    reached = found.f_x <= RESOLVED * np.abs(below[:, row]).max(0)
-    return row[reached], found.x[reached]
+    reached = minimum.f_x <= RESOLVED * np.abs(below[:, row]).max(0)
+    return row[reached], minimum.x[reached]
 
 
 def _first_maximum(
@@ -699,7 +703,7 @@ def _shift(
     ``by`` contains the derivatives of (q, v, t), shape (3, directions, rows).
     """
     _, slope = event_rate(motion, event, state)
-    beside = (y + 1j * each for y, each in zip(state, by, strict=True))
+    beside = (y + 1j * derivative for y, derivative in zip(state, by, strict=True))
     return -event(*beside, motion.stepped()).imag / slope
 
 
@@ -723,21 +727,21 @@ def _next_panel(
     panel = solve_panel(motion, start, length, newton=newton)
     which, place = _first_event(motion, events, side, start, panel)
     rows = np.arange(which.size)
-    found = which
+    event = which
     place = length * place
     for _ in events:
-        for k in np.unique(found[found >= 0]):
-            at = rows[found == k]
+        for k in np.unique(event[event >= 0]):
+            at = rows[event == k]
             begin = [y[at] for y in start]
-            short = place[found == k]
+            short = place[event == k]
             within = EVENT_STEP * length[at]
             push = panel.of(at).pushed(short / panel.length[at], motion.gauss)
             given = motion.of(at), begin, short, events[k], within
             panel.replace_some(at, solve_panel(*given, push=push, newton=newton))
-        which[rows[found >= 0]] = found[found >= 0]
-        doubtful = (found >= 0) & np.isfinite(panel.change[rows])
+        which[rows[event >= 0]] = event[event >= 0]
+        doubtful = (event >= 0) & np.isfinite(panel.change[rows])
         if not motion.kinks:
-            doubtful &= found > 0
+            doubtful &= event > 0
         rows = rows[doubtful]
         if not rows.size:
             break
@@ -745,7 +749,7 @@ def _next_panel(
         others = side[:, rows]
         others[which[rows], np.arange(rows.size)] = np.nan
         begin = [y[rows] for y in start]
-        found, place = _first_event(motion.of(rows), events, others, begin, panel.of(rows))
+        event, place = _first_event(motion.of(rows), events, others, begin, panel.of(rows))
         place = panel.length[rows] * place
     kink = np.flatnonzero((which >= 0) & (which < len(motion.kinks)))
     if kink.size and len(events) > len(motion.kinks):
@@ -908,18 +912,18 @@ def sampled(motion: ContactMotion, start: NDArray, until: NDArray, places: NDArr
 
     They are NaN beyond the end of a contact that does not last that long.
     """
-    found = np.full((3, places.size, until.size), np.nan)
+    states = np.full((3, places.size, until.size), np.nan)
 
     def accept(rows: NDArray, starts: NDArray, panel: Panel) -> None:
         here = (np.multiply.outer(places, until[rows]) - starts) / panel.length
         inside = (here > -SAME) & (here < 1 + SAME)
-        some = found[..., rows]
-        found[..., rows] = np.where(inside, panel.states(here, motion.gauss), some)
+        some = states[..., rows]
+        states[..., rows] = np.where(inside, panel.states(here, motion.gauss), some)
 
     by = np.zeros((2, 0, until.size))
     given = until / (1.5 * motion.root), np.full(until.size, 2 * np.pi)
     integrate_contacts(motion, start, by, *given, until=until, accept=accept)
-    return found
+    return states
 
 
 @np.errstate(all="ignore")

@@ -132,7 +132,7 @@ def landings(
     fewest = FEW_BALLS if table.is_sine else 1
     time = first_zeros(look, start, [*limits, gap, w, *waves], fewest)
     for i in np.isnan(time).nonzero()[0] if table.is_sine else ():
-        time[i], _ = one_ball.landing(*(each[i] for each in (start, gap, w, *waves, amplitude)))
+        time[i], _ = one_ball.landing(*(values[i] for values in (start, gap, w, *waves, amplitude)))
     return time
 
 
@@ -186,7 +186,7 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
     (slow,) = (w * np.maximum(fourth, 1.0) <= limit).nonzero()
     if slow.size:
         _, y, x = table.pulls(table.waves(phase[slow], amplitude[slow]))
-        given = (each.tolist() for each in (w[slow], restitution[slow], x, y, fourth[slow]))
+        given = (values.tolist() for values in (w[slow], restitution[slow], x, y, fourth[slow]))
         stay[slow] = [*map(one_ball.settling, *given)]
     rests = stay >= 0
     duration = np.maximum(stay, 0.0)
@@ -248,11 +248,11 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
         # table with a speed of at least κ g. Until then δ + κδ′ rises, so no contact resumes.
         slow = (w <= strongest * (1 + np.sqrt(2)) * kappa) | (w * w + 2 * strongest * gap <= 0)
         (low,) = ((gap < 0) & slow).nonzero()
-        given = (each[low] for each in (kappa, *states))
+        given = (values[low] for values in (kappa, *states))
         start[low], resumes[low] = resumptions(table, *given)
     time = np.where(start < np.inf, start, np.nan)
     (lands,) = (~resumes & (start < np.inf)).nonzero()
-    time[lands] = landings(table, start[lands], *(each[lands] for each in states))
+    time[lands] = landings(table, start[lands], *(values[lands] for values in states))
     speed = -table.flights(time, gap, w, waves)[1]
     return time, np.where(resumes, speed, np.maximum(speed, 0.0))
 
@@ -272,7 +272,7 @@ def step(balls: Balls) -> tuple[NDArray, NDArray, Balls]:
     record[3:7] = leaving.scaled_duration, leaving.duration, leaving.gap, leaving.speed
     (going,) = (leaving.duration < np.inf).nonzero()
     balls = balls.take(going)
-    leaving = Leaving(*(each[going] for each in leaving))
+    leaving = Leaving(*(values[going] for values in leaving))
     time, speed = fly(balls, leaving)
     record[7, going] = time
     turns, phase = reduced(leaving.phase + time)

@@ -105,23 +105,23 @@ class ImpactMap:
 
     def leaves(self, tau: NDArray, u: NDArray) -> tuple[NDArray, ...]:
         """T, D, δ and δ′ at the first release. D is infinite if the ball stays on the table."""
-        found = np.empty((4, u.size))
+        releases = np.empty((4, u.size))
         number, x = self._places(u)
         known = np.zeros(u.shape, bool)
         for k, piece in enumerate(self.pieces):
             (at,) = (number == k).nonzero()
             known[at] = True
             waves = np.exp(1j * np.outer(tau[at], np.arange(piece.shape[1])))
-            found[:, at] = _sum(piece, chebyshev.chebvander(x[at], MAP_DEGREE), waves)
+            releases[:, at] = _sum(piece, chebyshev.chebvander(x[at], MAP_DEGREE), waves)
         (others,) = (~known).nonzero()
         if others.size:
             given = tau[others], u[others], self.amplitude, self.table
-            found[:, others] = self.ball.leaves(*given)
-        return tuple(found)
+            releases[:, others] = self.ball.leaves(*given)
+        return tuple(releases)
 
     def end_slopes(self, tau: NDArray, u: NDArray, T: NDArray) -> NDArray:
         """Derivatives as in :meth:`.Ball.end_slopes`; NaN if u is NaN."""
-        found = np.full((3, 2, *u.shape), np.nan)
+        slopes = np.full((3, 2, *u.shape), np.nan)
         number, x = self._places(u)
         known = np.zeros(u.shape, bool)
         for k, piece in enumerate(self.pieces):
@@ -132,18 +132,18 @@ class ImpactMap:
             powers = chebyshev.chebvander(x[at], MAP_DEGREE)
             by_x = chebyshev.chebder(piece[1:], axis=2)
             stretch = 2 / (np.log(MAP_FACTOR) * u[at])
-            found[:, 0, at] = _sum(1j * harmonics[:, np.newaxis] * piece[1:], powers, waves)
-            found[:, 1, at] = _sum(by_x, powers[:, :-1], waves) * stretch
+            slopes[:, 0, at] = _sum(1j * harmonics[:, np.newaxis] * piece[1:], powers, waves)
+            slopes[:, 1, at] = _sum(by_x, powers[:, :-1], waves) * stretch
         others = ~known & np.isfinite(u)
         given = tau[others], u[others], T[others], self.amplitude, self.table
-        found[..., others] = self.ball.end_slopes(*given)
-        return found
+        slopes[..., others] = self.ball.end_slopes(*given)
+        return slopes
 
 
 def _sum(coefficients: NDArray, powers: NDArray, waves: NDArray) -> NDArray:
     """Real parts of the sums over harmonics and polynomials, shape (quantities, points)."""
-    each = np.tensordot(coefficients, powers, ([2], [1]))
-    return np.einsum("qmn,nm->qn", each, waves).real
+    harmonics = np.tensordot(coefficients, powers, ([2], [1]))
+    return np.einsum("qmn,nm->qn", harmonics, waves).real
 
 
 def impact_map(

@@ -206,14 +206,14 @@ def ends_of(balls: Balls, impacts: int, effort: Effort, step: str) -> dict:
     impacts = whole_number("impacts", impacts)
     effort.spend(0, step)
     numbers = ("lyapunov_exponent", "lyapunov_error", "exponent_sum", "end_phase", "end_speed")
-    found = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
-    found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
-    found |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
-    found["rested"] = np.zeros(balls.phase.size, bool)
+    ends = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
+    ends |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
+    ends |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
+    ends["rested"] = np.zeros(balls.phase.size, bool)
     for first in range(0, balls.phase.size, BALLS_AT_ONCE):
         lane = np.arange(first, min(first + BALLS_AT_ONCE, balls.phase.size))
-        _follow_to_end(found, balls.take(lane), lane, impacts, effort)
-    return found
+        _follow_to_end(ends, balls.take(lane), lane, impacts, effort)
+    return ends
 
 
 def is_worth_a_map(balls: Balls, impacts: int, seen: int) -> bool:
@@ -230,20 +230,20 @@ def is_worth_a_map(balls: Balls, impacts: int, seen: int) -> bool:
     return not several and np.ptp(balls.amplitude) == 0
 
 
-def _store(found: dict, which: Any, **values: Any) -> None:
+def _store(ends: dict, which: Any, **values: Any) -> None:
     """Store one value or array per name for the balls ``which``."""
     for name, value in values.items():
-        found[name][which] = value
+        ends[name][which] = value
 
 
 def _take(track: dict, which: Any) -> dict:
     """Select balls from all arrays of ``track``; balls are the last axis."""
-    return {name: each[..., which] for name, each in track.items()}
+    return {name: values[..., which] for name, values in track.items()}
 
 
 @np.errstate(all="ignore")
-def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, effort: Effort) -> None:
-    """Follow balls until the motion of each ball is known, and store the motions in ``found``.
+def _follow_to_end(ends: dict, balls: Balls, lane: NDArray, impacts: int, effort: Effort) -> None:
+    """Follow balls until the motion of each ball is known, and store the motions in ``ends``.
 
     Floating-point warnings are off, because deviations overflow in long motions and vanish at a
     lift-off.
@@ -272,7 +272,7 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, effor
             max(IMPACTS_AT_ONCE // track["lane"].size // SECTION, 1),
         )
         record, going, after = bounce(balls, count * SECTION, effort)
-        _store_resting(found, track["lane"], record, going, seen)
+        _store_resting(ends, track["lane"], record, going, seen)
         balls = balls.take(going)
         track = _take(track, going)
         record = record[:, :, going]
@@ -281,13 +281,13 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, effor
         again = recurrence(balls, record, after, maps)
         lap = grow_deviations(track, record, after, maps, lifts)
         track["marginal"] = again["marginal"]
-        _store_periodic(found, track["lane"], record, after, again, seen)
-        locked = _store_locked(found, track, record, after, lifts, lap, seen)
+        _store_periodic(ends, track["lane"], record, after, again, seen)
+        locked = _store_locked(ends, track, record, after, lifts, lap, seen)
         seen += len(record)
         (todo,) = (~locked & ~again["repeats"]).nonzero()
         balls = after.take(todo)
         track = _take(track, todo)
-    _store_others(found, balls, track, seen)
+    _store_others(ends, balls, track, seen)
 
 
 def running_products(maps: NDArray) -> tuple[NDArray, NDArray]:
@@ -369,7 +369,9 @@ def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> di
         # Multiples of a lap have the same fixed point, so keep the shortest lap.
         (some,) = (near[k - 1] & (distance > NEAR_BEFORE)).nonzero()
         last = phase[:, some], speed[:, some]
-        turn = apart(*(each[n + 1 - k :] - each[n + 1 - 2 * k : n + 1 - k] for each in last))
+        turn = apart(
+            *(quantity[n + 1 - k :] - quantity[n + 1 - 2 * k : n + 1 - k] for quantity in last)
+        )
         some = some[turn.max(axis=0) < NEAR_BEFORE]
         scale = 1 + balls.amplitude[some]
         angle = (phase[n] - phase[n - k])[some]
@@ -416,13 +418,13 @@ def contraction(maps: NDArray) -> NDArray:
     return np.log(np.abs(maps[0, 0] * maps[1, 1] - maps[0, 1] * maps[1, 0]))
 
 
-def _store_resting(found: dict, lane: NDArray, record: NDArray, going: NDArray, seen: int) -> None:
+def _store_resting(ends: dict, lane: NDArray, record: NDArray, going: NDArray, seen: int) -> None:
     """Store balls that stay on the table, or whose contact would resume below the table."""
     resting = np.delete(np.arange(lane.size), going)
     count = np.isfinite(record[:, 0, resting]).sum(axis=0)
     stays = np.isinf(record[count - 1, 4, resting])
     _store(
-        found,
+        ends,
         lane[resting],
         kind=np.where(stays, PERMANENT, UNDECIDED),
         periods=stays,
@@ -431,13 +433,13 @@ def _store_resting(found: dict, lane: NDArray, record: NDArray, going: NDArray, 
     )
 
 
-def _store_end(found: dict, lane: NDArray, after: Balls, which: Any, **values: Any) -> None:
+def _store_end(ends: dict, lane: NDArray, after: Balls, which: Any, **values: Any) -> None:
     """Store results and the state at the next impact, for balls that keep bouncing."""
-    _store(found, lane, end_phase=after.phase[which], end_speed=after.speed[which], **values)
+    _store(ends, lane, end_phase=after.phase[which], end_speed=after.speed[which], **values)
 
 
 def _store_periodic(
-    found: dict, lane: NDArray, record: NDArray, after: Balls, again: dict, seen: int
+    ends: dict, lane: NDArray, record: NDArray, after: Balls, again: dict, seen: int
 ) -> None:
     """Store balls whose motion is periodic.
 
@@ -450,7 +452,7 @@ def _store_periodic(
     sticks = record[:, 3, some] > 2 * free
     of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
     _store_end(
-        found,
+        ends,
         lane[some],
         after,
         some,
@@ -465,7 +467,7 @@ def _store_periodic(
 
 
 def _store_locked(
-    found: dict, track: dict, record: NDArray, after: Balls, lifts: NDArray, lap: NDArray, seen: int
+    ends: dict, track: dict, record: NDArray, after: Balls, lifts: NDArray, lap: NDArray, seen: int
 ) -> NDArray:
     """Store balls that lift off twice at the same phase; record the other lift-offs in ``track``.
 
@@ -491,7 +493,7 @@ def _store_locked(
     locked = lifted & (number >= 0)
     known = lap[locked] < ROUNDING_GROWTH
     _store_end(
-        found,
+        ends,
         track["lane"][locked],
         after,
         locked,
@@ -507,7 +509,7 @@ def _store_locked(
     return locked
 
 
-def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
+def _store_others(ends: dict, balls: Balls, track: dict, seen: int) -> None:
     """Store balls that neither repeat nor come to rest.
 
     A ball is chaotic if neighbouring motions separate exponentially. Otherwise it is undecided.
@@ -524,7 +526,7 @@ def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
         else:
             reason = NO_RECURRENCE if np.isfinite(error) else LITTLE_LOSS
         _store_end(
-            found,
+            ends,
             lane,
             balls,
             j,
@@ -660,8 +662,8 @@ def motion_of(
     Examples
     --------
     >>> from bouncing_ball_beyond import Rigid
-    >>> found = motion_of(Rigid(0.5), amplitude=[0.5, 1.2, 1.6])
-    >>> found.kind.values.tolist(), found.impacts.values.tolist()
+    >>> motions = motion_of(Rigid(0.5), amplitude=[0.5, 1.2, 1.6])
+    >>> motions.kind.values.tolist(), motions.impacts.values.tolist()
     (['permanent contact', 'periodic', 'periodic'], [0, 1, 2])
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
@@ -671,11 +673,11 @@ def motion_of(
 
 def dataset_of(grid: xr.DataArray, amplitude: Values, table: Table, ends: dict) -> xr.Dataset:
     """Convert the results of :func:`ends_of` to a dataset over a grid."""
-    found = ends.copy()
-    found["end_velocity"] = amplitude * table(ends["end_phase"], 1) - found.pop("end_speed")
-    del found["rested"]
-    found |= {name: ends[name].astype(str) for name in ("kind", "reason")}
-    return dataset(grid, found, OF_MOTIONS)
+    variables = ends.copy()
+    variables["end_velocity"] = amplitude * table(ends["end_phase"], 1) - variables.pop("end_speed")
+    del variables["rested"]
+    variables |= {name: ends[name].astype(str) for name in ("kind", "reason")}
+    return dataset(grid, variables, OF_MOTIONS)
 
 
 def lyapunov(
@@ -722,8 +724,8 @@ def lyapunov(
     The multipliers of the 1-T orbit are complex, and their modulus is r:
 
     >>> from bouncing_ball_beyond import Rigid
-    >>> found = lyapunov(Rigid(0.85), amplitude=1.0, phase=1.1)
-    >>> round(float(np.exp(found.lyapunov_exponent)), 6)
+    >>> motion = lyapunov(Rigid(0.85), amplitude=1.0, phase=1.1)
+    >>> round(float(np.exp(motion.lyapunov_exponent)), 6)
     0.85
     """
     neighbours = whole_number("neighbours", neighbours, 0)
@@ -835,8 +837,8 @@ def basins(
     Examples
     --------
     >>> from bouncing_ball_beyond import Rigid
-    >>> found = basins(Rigid(0.5), amplitude=1.2, starts=20)
-    >>> sorted(found.kind.values.tolist()), float(found.share.sum())
+    >>> motions = basins(Rigid(0.5), amplitude=1.2, starts=20)
+    >>> sorted(motions.kind.values.tolist()), float(motions.share.sum())
     (['locked', 'periodic'], 1.0)
     """
     check_one_ball(ball)
@@ -859,9 +861,9 @@ def basins(
         "share_error": np.sqrt(share * (1 - share) / which.size),
         "motion": np.arange(share.size),
     }
-    found = dataset(grid, {"destination": which}, OF_MOTIONS)
-    found = found.assign({name: ("motion", value) for name, value in values.items()})
-    return described(found.assign_attrs(impacts=impacts), OF_MOTIONS)
+    destinations = dataset(grid, {"destination": which}, OF_MOTIONS)
+    destinations = destinations.assign({name: ("motion", value) for name, value in values.items()})
+    return described(destinations.assign_attrs(impacts=impacts), OF_MOTIONS)
 
 
 def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
@@ -875,7 +877,7 @@ def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
     kinds = ends["kind"].astype(str)
     balls = replace(balls, phase=ends["end_phase"], speed=ends["end_speed"])
     which = np.full(kinds.size, -1)
-    found: list[tuple] = []
+    motions: list[tuple] = []
     while (which < 0).any():
         first = int(which.argmin())
         kind = kinds[first]
@@ -888,16 +890,19 @@ def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
             phase, u = bounce(balls.take(np.array([first])), k)[0][:, 1:3, 0].T
             amplitude = balls.amplitude[first]
             near = np.full(same.size, np.inf)
-            for each, speed in zip(phase, u, strict=True):
-                away = balls.phase[same] - each, (balls.speed[same] - speed) / (1 + amplitude)
+            for impact_phase, speed in zip(phase, u, strict=True):
+                away = (
+                    balls.phase[same] - impact_phase,
+                    (balls.speed[same] - speed) / (1 + amplitude),
+                )
                 near = np.fmin(near, apart(*away))
             same = same[near < NEAR_BEFORE]
             i = int(u.argmax())
             fastest_impact = phase[i], amplitude * balls.table(phase[i], 1) - u[i]
-        which[same] = len(found)
-        found.append((kind, k, periods, *map(float, fastest_impact)))
-    order = sorted(range(len(found)), key=found.__getitem__)
-    columns = zip(*(found[i] for i in order), strict=True)
+        which[same] = len(motions)
+        motions.append((kind, k, periods, *map(float, fastest_impact)))
+    order = sorted(range(len(motions)), key=motions.__getitem__)
+    columns = zip(*(motions[i] for i in order), strict=True)
     names = "kind", "impacts", "periods", "end_phase", "end_velocity"
     return np.argsort(order)[which], dict(zip(names, columns, strict=True))
 
@@ -938,8 +943,8 @@ def orbit_diagram(
     Examples
     --------
     >>> from bouncing_ball_beyond import Rigid
-    >>> found = orbit_diagram(Rigid(0.5), amplitude=[1.5, 1.6], starts=4, impacts=200)
-    >>> found.impacts.isel(start=2).values.tolist()
+    >>> diagram = orbit_diagram(Rigid(0.5), amplitude=[1.5, 1.6], starts=4, impacts=200)
+    >>> diagram.impacts.isel(start=2).values.tolist()
     [1, 2]
     """
     check_table(table)
@@ -963,7 +968,7 @@ def orbit_diagram(
         passes.append(ends_of(beside, impacts, effort, "starts from the ends at other values"))
     shape = grid.size, starts
     ends = {
-        name: np.hstack([each[name].reshape(shape) for each in passes]).ravel()
+        name: np.hstack([motions[name].reshape(shape) for motions in passes]).ravel()
         for name in passes[0]
     }
     value = np.repeat(np.arange(grid.size), len(passes) * starts)

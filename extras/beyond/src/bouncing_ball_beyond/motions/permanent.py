@@ -91,7 +91,7 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
     for level in LEVELS:
         # The grip may have become weaker at another instant, and has the level there at a lower Λ.
         for _ in range(2):
-            found = solve_bvp(
+            solution = solve_bvp(
                 steady.rates,
                 lambda start, end, unknown, level=level: steady.ends(start, end, unknown, level),
                 x,
@@ -100,14 +100,14 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
                 tol=RESIDUAL,
                 max_nodes=MOST_NODES,
             )
-            if not found.success:
+            if not solution.success:
                 raise ValueError(
-                    f"{law}: no steady motion in contact is found near Λ = {found.p[1]:.4g}"
+                    f"{law}: no steady motion in contact is found near Λ = {solution.p[1]:.4g}"
                 )
-            p, v = found.sol(x)
-            later = x[steady.grip(p, v, steady.load(x, found.p)).argmin()]
+            p, v = solution.sol(x)
+            later = x[steady.grip(p, v, steady.load(x, solution.p)).argmin()]
             # Nodes that are kept from level to level become so many that they only round.
-            y, unknown = found.sol((x + later) % PERIOD), found.p + np.array([later, 0.0])
+            y, unknown = solution.sol((x + later) % PERIOD), solution.p + np.array([later, 0.0])
         if unknown[1] < before:
             raise ValueError(
                 f"{law}: the steady motion in contact ends, or is not the only one, near"

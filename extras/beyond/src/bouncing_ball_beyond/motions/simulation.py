@@ -54,13 +54,13 @@ def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray
     arrays = [axis(name, value) for name, value in values.items()]
     arrays += [axis(name, value, dim) for name, value in rows.items()]
     every = xr.broadcast(*xr.align(*arrays, join="exact"))
-    flat = [each.values.ravel() for each in every]
+    flat = [array.values.ravel() for array in every]
     amplitude = flat[list(values).index("amplitude")]
     if (amplitude < 0).any():
         raise ValueError(f"amplitude = {amplitude.min():g}: must be at least 0")
     if rows:
         ball = ball.at(**dict(zip(rows, flat[len(values) :], strict=True)))
-    grid = every[0].assign_coords(xr.merge(each.coords for each in arrays).coords)
+    grid = every[0].assign_coords(xr.merge(array.coords for array in arrays).coords)
     return grid, ball, flat[: len(values)]
 
 
@@ -127,20 +127,20 @@ def dataset(
     """
     for name in coordinates.keys() & set(grid.dims):
         raise ValueError(f"{name}: is an axis of the result: rename this axis of the DataArray")
-    found = xr.Dataset(coords=dict(grid.coords) | coordinates)
+    data = xr.Dataset(coords=dict(grid.coords) | coordinates)
     names = list(coordinates)
     for name, value in variables.items():
         value = np.reshape(value, grid.shape + np.shape(value)[1:])
-        found[name] = ((*grid.dims, *names[: value.ndim - grid.ndim]), value)
-    return described(found, descriptions)
+        data[name] = ((*grid.dims, *names[: value.ndim - grid.ndim]), value)
+    return described(data, descriptions)
 
 
-def described(found: xr.Dataset, descriptions: Mapping) -> xr.Dataset:
-    for name in found.variables:
+def described(data: xr.Dataset, descriptions: Mapping) -> xr.Dataset:
+    for name in data.variables:
         if name in descriptions:
             labels = zip(("long_name", "symbol", "units"), descriptions[name], strict=True)
-            found[name].attrs.update(labels)
-    return found
+            data[name].attrs.update(labels)
+    return data
 
 
 @contextmanager
@@ -221,7 +221,7 @@ def simulate(
     after = balls.amplitude * table(start + np.where(duration < np.inf, duration, np.nan), 1)
     status = np.full(balls.phase.shape, "permanent contact")
     status[going] = "bouncing"
-    found = {
+    variables = {
         "time": PERIOD * (turns - balls.turns) + (start - balls.phase),
         "impact_phase": start,
         "impact_velocity": before - u,
@@ -231,8 +231,8 @@ def simulate(
         "relative_bounce_velocity": w,
         "flight_time": flight_time,
     }
-    found = {name: value.T for name, value in found.items()} | {"status": status}
-    return dataset(grid, found, DESCRIPTIONS, impact=np.arange(len(record)))
+    variables = {name: value.T for name, value in variables.items()} | {"status": status}
+    return dataset(grid, variables, DESCRIPTIONS, impact=np.arange(len(record)))
 
 
 def history(
@@ -311,8 +311,8 @@ def drop(
     Examples
     --------
     >>> from bouncing_ball_beyond import Rigid
-    >>> found = drop(Rigid(0.5), height=[2.0, 8.0], periods=1.0)
-    >>> found.ball.sel(time=0).values.tolist()
+    >>> heights = drop(Rigid(0.5), height=[2.0, 8.0], periods=1.0)
+    >>> heights.ball.sel(time=0).values.tolist()
     [2.0, 8.0]
     """
     grid, ball, (height, amplitude, phase) = grid_of(
@@ -352,8 +352,8 @@ def over_time(
     with in_memory(f"periods = {periods:g}, samples = {samples}"):
         times = np.linspace(0, PERIOD * periods, round(periods * samples) + 1)
         shape = balls.phase.size, times.size
-        found = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}
-        found["contact"] = np.empty(shape, bool)
+        variables = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}
+        variables["contact"] = np.empty(shape, bool)
     for j, amplitude in enumerate(balls.amplitude):
         one = balls.take([j])
         records = [fall[:, :, j]]
@@ -368,11 +368,11 @@ def over_time(
         record = np.concatenate(records)
         record = record[np.isfinite(record[:, 0])]
         one = balls.take([j])
-        gap, rate, found["contact"][j] = states_at(record, origin, one, times)
-        found["table"][j] = amplitude * balls.table(origin + times)
-        found["ball"][j] = gap + found["table"][j]
-        found["ball_velocity"][j] = rate + amplitude * balls.table(origin + times, 1)
-    return dataset(grid, found, DESCRIPTIONS, time=times)
+        gap, rate, variables["contact"][j] = states_at(record, origin, one, times)
+        variables["table"][j] = amplitude * balls.table(origin + times)
+        variables["ball"][j] = gap + variables["table"][j]
+        variables["ball_velocity"][j] = rate + amplitude * balls.table(origin + times, 1)
+    return dataset(grid, variables, DESCRIPTIONS, time=times)
 
 
 def states_at(

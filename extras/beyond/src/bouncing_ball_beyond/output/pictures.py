@@ -58,12 +58,12 @@ MARKED = 4
 """Number of impacts above which special orbits have no marks. More marks would hide the lines."""
 
 
-def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure:
+def plot(*branches: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure:
     """Draw branches against their parameter, or curves of special orbits against two parameters.
 
     Parameters
     ----------
-    *found : FollowedBranch, SpecialCurve or list of them
+    *branches : FollowedBranch, SpecialCurve or list of them
         Branches or curves, all along the same parameters. A cascade is a list of branches.
     quantity : str
         Quantity drawn against the parameter of a branch. It is "max_height", or a quantity of
@@ -78,12 +78,12 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
     Raises
     ------
     ValueError
-        If ``found`` contains other objects, or if there is no such quantity.
+        If ``branches`` contains other objects, or if there is no such quantity.
     """
-    groups = [group if isinstance(group, list | tuple) else [group] for group in found]
+    groups = [group if isinstance(group, list | tuple) else [group] for group in branches]
     # An OrbitNotFound is left out.
-    branches = [each for group in groups for each in group if isinstance(each, FollowedBranch)]
-    along = {tuple(path.name for path in each.equations.along) for each in branches}
+    drawn = [branch for group in groups for branch in group if isinstance(branch, FollowedBranch)]
+    along = {tuple(path.name for path in branch.equations.along) for branch in drawn}
     if len(along) != 1:
         raise ValueError(
             "plot draws branches, curves and lists of them, all along the same parameters, such as"
@@ -98,17 +98,17 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
         axes = figure.subplots() if ax is None else ax
         entries: dict[str, Any] = {}
         lines: dict[str, Any] = {}
-        title, differences = _texts(branches)
+        title, differences = _texts(drawn)
         # Orbits of the same parameters share a colour, and curves if their kind is also the same.
         keys = [
             (difference, getattr(branch, "kind", ""))
-            for difference, branch in zip(differences, branches, strict=True)
+            for difference, branch in zip(differences, drawn, strict=True)
         ]
         kinds = dict.fromkeys(keys)
         # Several colours leave out black, in which the legend has what branches share.
         black = int(len(kinds) > 1)
         palette = dict(zip(kinds, colours(len(kinds) + black)[black:], strict=True))
-        for branch, key in zip(branches, keys, strict=True):
+        for branch, key in zip(drawn, keys, strict=True):
             entries |= _draw(axes, branch, quantity, palette[key])
             lines[key[0]] = sample(color=palette[key])
         entries = dict(sorted(entries.items(), key=_order)) | (lines if len(lines) > 1 else {})
@@ -125,7 +125,7 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
     is_curve = isinstance(branch, SpecialCurve)
     shown = branch.refined()
     orbits = shown.with_special()
-    whole = replace(shown, z=np.array([each.z for each in orbits]))
+    whole = replace(shown, z=np.array([orbit.z for orbit in orbits]))
     x, y, period = _coordinates(whole, quantity)
     stable = np.ones(len(x), bool) if is_curve else whole.stable
     looks = 2 * whole.admissible + stable
@@ -145,11 +145,11 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
         # entry is black.
         common = colour if is_curve else "black"
         entries[text] = sample(**look | {"color": common if admissible else pale(common)})
-    for each, abscissa, ordinates in zip(orbits, x, y, strict=True):
-        if each in branch.special and each.impacts <= MARKED:
-            look = MARK | {"marker": MARKS[each.kind]}
+    for orbit, abscissa, ordinates in zip(orbits, x, y, strict=True):
+        if orbit in branch.special and orbit.impacts <= MARKED:
+            look = MARK | {"marker": MARKS[orbit.kind]}
             axes.plot(np.full(ordinates.shape, abscissa), ordinates, color=colour, **look)
-            entries[each.kind] = sample(**look)
+            entries[orbit.kind] = sample(**look)
     return entries
 
 
@@ -160,14 +160,14 @@ def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -
     is ordinary if its only neighbour is special, and if the multipliers of the orbit at the end are
     away from the unit circle.
     """
-    places = [each.z for each in special]
-    marked = [any(np.array_equal(each.z, z) for z in places) for each in orbits]
+    places = [orbit.z for orbit in special]
+    marked = [any(np.array_equal(orbit.z, z) for z in places) for orbit in orbits]
     last = len(orbits) - 1
     inner = []
-    for i, each in enumerate(orbits):
+    for i, orbit in enumerate(orbits):
         at_end = i in (0, last)
         alone = at_end and last > 1 and marked[1 if i == 0 else last - 1]
-        alone = alone and np.abs(np.abs(each.multipliers) - 1).min() > BESIDE
+        alone = alone and np.abs(np.abs(orbit.multipliers) - 1).min() > BESIDE
         if not marked[i] and (alone or not at_end):
             inner.append(i)
     others = np.array(inner or [0])
@@ -190,7 +190,7 @@ def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArra
         return branch.z[:, -2], branch.z[:, -1:], np.inf
     if quantity == "max_height":
         return branch.values, branch.equations.max_height(branch.z)[:, np.newaxis], np.inf
-    y = np.array([np.atleast_1d(getattr(each, quantity)) for each in branch.orbits])
+    y = np.array([np.atleast_1d(getattr(orbit, quantity)) for orbit in branch.orbits])
     is_angle = OF_IMPACTS[quantity][2] == "rad"
     return branch.values, y / np.pi if is_angle else y, 2.0 if is_angle else np.inf
 
@@ -221,8 +221,8 @@ def _texts(branches: list[FollowedBranch]) -> tuple[str, list[str]]:
     The texts of branches have the rest.
     """
     constants = [_constants(branch) for branch in branches]
-    same = [text for text in constants[0] if all(text in each for each in constants)]
-    others = [", ".join(text for text in each if text not in same) for each in constants]
+    same = [text for text in constants[0] if all(text in texts for texts in constants)]
+    others = [", ".join(text for text in texts if text not in same) for texts in constants]
     differences = [text.replace(EQUAL, " = ") for text in others]
     return fill(", ".join(same), TITLE).replace(EQUAL, " = "), differences
 
@@ -234,12 +234,12 @@ def _constants(branch: FollowedBranch) -> list[str]:
     size of the first harmonic is 1.
     """
     # A branch may end at the value of its parameter at which it began.
-    first, *others = (each.parameters for each in branch.orbits)
+    first, *others = (orbit.parameters for orbit in branch.orbits)
     several = "s" if branch.impacts > 1 else ""
     return [f"{branch.impacts} impact{several} in {branch.periods} T"] + [
         f"{_symbol(name)}{EQUAL}{value:.4g}"
         for name, value in first.items()
-        if all(value == each[name] for each in others)
+        if all(value == parameters[name] for parameters in others)
         and value != (1.0 if name == "harmonic_1" else 0.0 if name.startswith("phase_") else None)
     ]
 

@@ -45,12 +45,12 @@ PARAMETERS = {
 """Parameters. The long name of a parameter of a law is its name."""
 
 
-def to_dataset(found: PeriodicOrbit | FollowedBranch) -> xr.Dataset:
+def to_dataset(orbit_or_branch: PeriodicOrbit | FollowedBranch) -> xr.Dataset:
     """Convert an orbit, a branch or a curve to a labelled dataset.
 
     Parameters
     ----------
-    found : PeriodicOrbit, FollowedBranch or SpecialCurve
+    orbit_or_branch : PeriodicOrbit, FollowedBranch or SpecialCurve
 
     Returns
     -------
@@ -63,7 +63,7 @@ def to_dataset(found: PeriodicOrbit | FollowedBranch) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If ``found`` is something else, such as a list of branches.
+        If ``orbit_or_branch`` is something else, such as a list of branches.
 
     Examples
     --------
@@ -72,24 +72,28 @@ def to_dataset(found: PeriodicOrbit | FollowedBranch) -> xr.Dataset:
     >>> round(data.impact_velocity.item(), 6), dict(data.sizes)
     (-3.141593, {'point': 1, 'impact': 1, 'multiplier': 2})
     """
-    if not isinstance(found, PeriodicOrbit | FollowedBranch):
+    if not isinstance(orbit_or_branch, PeriodicOrbit | FollowedBranch):
         raise ValueError(
             "a dataset stores one orbit or branch: write"
             " [to_dataset(branch) for branch in branches]"
         )
-    orbits = [found] if isinstance(found, PeriodicOrbit) else found.with_special()
+    orbits = (
+        [orbit_or_branch]
+        if isinstance(orbit_or_branch, PeriodicOrbit)
+        else orbit_or_branch.with_special()
+    )
     first = orbits[0]
     along = [path.name for path in first.equations.along]
     of_impacts = {
-        name: [np.atleast_1d(getattr(each, name)) for each in orbits] for name in OF_IMPACTS
+        name: [np.atleast_1d(getattr(orbit, name)) for orbit in orbits] for name in OF_IMPACTS
     }
-    of_impacts["impact_time"] = [each.times for each in orbits]
-    T = [each.scaled_durations for each in orbits]
+    of_impacts["impact_time"] = [orbit.times for orbit in orbits]
+    T = [orbit.scaled_durations for orbit in orbits]
     if np.size(T):
         of_impacts["scaled_duration"] = T
-    of_orbits = {name: [getattr(each, name) for each in orbits] for name in OF_ORBITS}
-    of_orbits |= {name: [each.parameters[name] for each in orbits] for name in first.parameters}
-    multipliers = np.array([each.multipliers for each in orbits])
+    of_orbits = {name: [getattr(orbit, name) for orbit in orbits] for name in OF_ORBITS}
+    of_orbits |= {name: [orbit.parameters[name] for orbit in orbits] for name in first.parameters}
+    multipliers = np.array([orbit.multipliers for orbit in orbits])
     data = xr.Dataset(
         {
             **{name: (("point", "impact"), values) for name, values in of_impacts.items()},
@@ -104,10 +108,10 @@ def to_dataset(found: PeriodicOrbit | FollowedBranch) -> xr.Dataset:
             "table": repr(first.table),
         },
     )
-    if isinstance(found, FollowedBranch):
-        data.attrs |= {"start": found.start, "end": found.end}
-    if isinstance(found, SpecialCurve):
-        data.attrs["kind"] = found.kind
+    if isinstance(orbit_or_branch, FollowedBranch):
+        data.attrs |= {"start": orbit_or_branch.start, "end": orbit_or_branch.end}
+    if isinstance(orbit_or_branch, SpecialCurve):
+        data.attrs["kind"] = orbit_or_branch.kind
     texts = OF_IMPACTS | OF_ORBITS | OF_EQUATIONS | PARAMETERS
     for label, variable in data.items():
         text = texts.get(str(label), (str(label).replace("_", " "), "", "1"))

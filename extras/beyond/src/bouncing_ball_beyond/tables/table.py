@@ -62,19 +62,19 @@ def swing(x: Values) -> tuple[Values, Values]:
     return sine, half * sine
 
 
-def checked_harmonic(each: Any) -> tuple[int, float, float]:
+def checked_harmonic(harmonic: Any) -> tuple[int, float, float]:
     """Return (k, a, p) as numbers. Raises ValueError unless k ≥ 1 is whole and a, p are finite."""
     try:
-        k, a, p = each
+        k, a, p = harmonic
         good = int(k) == k >= 1 and isfinite(a) and isfinite(p)
     except (TypeError, ValueError):
         good = False
     if not good:
         raise ValueError(
-            f"harmonics: {each!r}: must be (k, a, p) for a harmonic a · sin(kτ + p), with a whole"
-            " number k from 1 and numbers a, p; frequencies in a ratio of whole numbers have a"
-            " common period: take it as the period of the table, such as k = 2 and 3 instead of 1"
-            " and 1.5"
+            f"harmonics: {harmonic!r}: must be (k, a, p) for a harmonic a · sin(kτ + p), with a"
+            " whole number k from 1 and numbers a, p; frequencies in a ratio of whole numbers have"
+            " a common period: take it as the period of the table, such as k = 2 and 3 instead of"
+            " 1 and 1.5"
         )
     return int(k), float(a), float(p)
 
@@ -157,7 +157,7 @@ class Table:
     def __init__(self, harmonics: Any) -> None:
         if not isinstance(harmonics, Iterable):
             raise ValueError(f"harmonics = {harmonics!r}: must be a list of (k, a, p)")
-        harmonics = sorted(checked_harmonic(each) for each in harmonics)
+        harmonics = sorted(checked_harmonic(harmonic) for harmonic in harmonics)
         orders = tuple(k for k, _, _ in harmonics)
         if not any(a for _, a, _ in harmonics):
             raise ValueError("harmonics: at least one must have a size other than 0")
@@ -295,10 +295,10 @@ class Table:
         --------
         >>> time = np.arange(0.0, 0.83, 1e-3)
         >>> signal = 9.81 + 7.0 * np.sin(157.08 * time) + 2.0 * np.sin(471.24 * time)
-        >>> found = Table.of_record(time, signal, frequency=25.1, harmonics=[1, 3])
-        >>> round(found.amplitude * 9.80665 * found.table.sizes[0], 4), found.table.orders
+        >>> measured = Table.of_record(time, signal, frequency=25.1, harmonics=[1, 3])
+        >>> round(measured.amplitude * 9.80665 * measured.table.sizes[0], 4), measured.table.orders
         (7.0, (1, 3))
-        >>> round(found.frequency, 6)
+        >>> round(measured.frequency, 6)
         25.000058
         """
         time = finite_row("time", time)
@@ -309,7 +309,7 @@ class Table:
         orders = harmonics
         if np.ndim(harmonics) == 0:
             orders = range(1, highest(harmonics) + 1)
-        k = np.array(sorted({highest(each) for each in orders}), int)
+        k = np.array(sorted({highest(order) for order in orders}), int)
         if not k.size:
             raise ValueError("harmonics: is empty: give at least one order")
         if len(time) != len(acceleration):
@@ -353,9 +353,9 @@ class Table:
         sizes = np.abs(pulls) / k**2
         # -Re p e^{ikτ} = |p| sin(kτ + φ) with φ = arg(-p) + π/2.
         waves = zip(k[kept], sizes[kept], np.angle(-pulls[kept]) + np.pi / 2, strict=True)
-        found = cls(waves)
-        scale = found.acceleration
-        return cls((k, a / scale, p) for k, a, p in found.harmonics), scale
+        unscaled = cls(waves)
+        scale = unscaled.acceleration
+        return cls((k, a / scale, p) for k, a, p in unscaled.harmonics), scale
 
     def __repr__(self) -> str:
         return f"Table([{', '.join(f'({k}, {a!r}, {p!r})' for k, a, p in self.harmonics)}])"
@@ -376,13 +376,13 @@ class Table:
         if len(new) > len(self.parameters):
             known = ", ".join(self.parameters) or "none"
             raise ValueError(f"{', '.join(values)}: must be a parameter of the table: {known}")
-        found = object.__new__(type(self))
-        vars(found).update(
+        table = object.__new__(type(self))
+        vars(table).update(
             orders=self.orders,
             sizes=tuple(new[f"harmonic_{k}"] for k in self.orders),
             phases=tuple(new[f"phase_{k}"] for k in self.orders),
         )
-        return found
+        return table
 
     def rows(self, which: Any) -> Any:
         """Return the table with x[which] instead of each parameter x that is an array."""
@@ -416,12 +416,12 @@ class Table:
 
     def waves(self, phase: Values, amplitude: Values) -> list:
         """Return x and y of each harmonic: [x₁, y₁, x₂, y₂, …]."""
-        found = []
+        waves = []
         for k, a, p in self.harmonics:
             sine, versine = swing(k * phase + p)
             scale = amplitude * a
-            found += [scale * (1 - versine), scale * sine]
-        return found
+            waves += [scale * (1 - versine), scale * sine]
+        return waves
 
     def each_wave(self, waves: Values) -> Values:
         """Iterate over k, x and y of each harmonic."""
@@ -455,11 +455,11 @@ class Table:
 
     def third(self, t: Values, w: Values, rate: Values, waves: Values) -> Values:
         """Return δ‴ at the time t after a release."""
-        found = 0.0
+        third = 0.0
         for k, x, y in self.each_wave(waves):
             sine, versine = swing(k * t)
-            found = found + k**3 * (x * (1 - versine) - y * sine)
-        return found
+            third = third + k**3 * (x * (1 - versine) - y * sine)
+        return third
 
     # Sizes
 
@@ -524,14 +524,14 @@ class Table:
         The key 1 is the side after the steepest phase, and the key -1 is the side before this
         phase. The values are phases and W′.
         """
-        found = {}
+        sides = {}
         for side in (1, -1):
             phase = self.steepest + side * np.linspace(0, PERIOD, 4 * len(self.grid) - 3)
             rises = side * self(phase, 2) > 0
             rises[0] = False
             phase = phase[: int(np.argmax(rises)) or len(phase)]
-            found[side] = phase, self(phase, 1)
-        return found
+            sides[side] = phase, self(phase, 1)
+        return sides
 
     @cached_property
     def next_low_slope(self) -> float:
@@ -556,10 +556,10 @@ class Table:
         slope = np.clip(slope, slopes[-1], slopes[0])
         # Next to the steepest phase W′ falls with the square of the distance.
         start = np.interp(np.sqrt(slopes[0] - slope), np.sqrt(slopes[0] - slopes), phase)
-        found = self._zero(start, lambda tau: (self(tau, 1) - slope, self(tau, 2)))
+        zero = self._zero(start, lambda tau: (self(tau, 1) - slope, self(tau, 2)))
         # At the steepest phase W″ consists of rounding errors, and Newton's method leads away.
-        nearer = np.abs(self(found, 1) - slope) <= np.abs(self(start, 1) - slope)
-        return np.where(nearer, found, start)
+        nearer = np.abs(self(zero, 1) - slope) <= np.abs(self(start, 1) - slope)
+        return np.where(nearer, zero, start)
 
     def phase_of_angle(self, angle: Values) -> Values:
         """Find the phase after the steepest phase at which (W′, -W″) has a given angle ≤ π/2."""

@@ -48,15 +48,15 @@ WAYS = {
 
 def references(data: xr.Dataset) -> str:
     """The reference orbits and balls as JSON, one per line; a missing value is null."""
-    found: dict[str, Any] = {}
+    tables: dict[str, Any] = {}
     for kind, dimensions in {
         "orbits": {"release", "sample"},
         "balls": {"model", "motion"},
     }.items():
         table = data.drop_dims(set(data.dims) - dimensions).to_dataframe().reset_index()
         rows = table.astype(object).where(table.notna(), None)
-        found[kind] = {"names": list(table), "rows": rows.values.tolist()}
-    return json.dumps(found, allow_nan=False).replace("], [", "],\n[")
+        tables[kind] = {"names": list(table), "rows": rows.values.tolist()}
+    return json.dumps(tables, allow_nan=False).replace("], [", "],\n[")
 
 
 def admitted(text: str) -> str:

@@ -91,7 +91,7 @@ def ext_answers(data: xr.Dataset) -> Figure:
                 *place, mark, color=look["color"], markerfacecolor=filled, markersize=5, zorder=5
             )
     ends = [
-        float(data.saddle_node_amplitude.sel(branch=each)) for each in ("contact", "restitution")
+        float(data.saddle_node_amplitude.sel(branch=model)) for model in ("contact", "restitution")
     ]
     branch.axvspan(*ends, facecolor="0.88", zorder=0)
     high = 1.1 * float(data.period_doubling_phase.max())
@@ -408,7 +408,9 @@ def ext_map(data: xr.Dataset) -> Figure:
     percent = f"{100 * parameters(data)['tolerance']:g} %"
     answers = "STABLE", f"AS HIGH WITHIN {percent}"
     for axes, answer in zip(slots[:, 0], answers, strict=True):
-        axes.set_yticks(places(xr.DataArray([*POSITIONS])), [f"{each:g}" for each in POSITIONS])
+        axes.set_yticks(
+            places(xr.DataArray([*POSITIONS])), [f"{position:g}" for position in POSITIONS]
+        )
         axes.set_ylim(0, np.pi / 2)
         axes.set_ylabel(f"{answer}\nposition of $\\Lambda$")
     entries = {

@@ -44,7 +44,7 @@ def follow_compliant(ball: SpringDamper, n: NDArray, exact: dict[str, NDArray]) 
     nodes = []
     for branch in follow(starts, to=1e-3):
         special = [] if isinstance(branch, OrbitNotFound) else branch.special
-        nodes.append(next((each for each in special if each.kind == "saddle-node"), None))
+        nodes.append(next((node for node in special if node.kind == "saddle-node"), None))
     exact["saddle_node"][some] = [node.amplitude if node else np.nan for node in nodes]
 
 

@@ -67,8 +67,10 @@ def ext_laws(data: xr.Dataset) -> list[list[str]]:
         ]
         is_height = line["quantity"] == "max_height"
         threshold = line["error_threshold"].isel(case=0, calibration=0)
-        found = number(threshold, ".4g") if is_height else "–"
-        rows.append([in_words(line["quantity"]), LAW_NAMES[line["law"].item()], *errors, found])
+        threshold_text = number(threshold, ".4g") if is_height else "–"
+        rows.append(
+            [in_words(line["quantity"]), LAW_NAMES[line["law"].item()], *errors, threshold_text]
+        )
     return rows
 
 

@@ -66,7 +66,7 @@ def branches(parameters: dict) -> xr.Dataset:
     phase = np.stack(
         [
             on_a_line(line, 0.0, in_model),
-            [each.phase for side in sides for each in side],
+            [contact_orbit.phase for side in sides for contact_orbit in side],
             on_a_line(level, turned, by_law),
         ]
     )
@@ -96,23 +96,23 @@ def lowest_windows(parameters: dict) -> xr.Dataset:
     span = parameters["window_restitution"]
     restitution = np.linspace(span["min"], span["max"], span["samples"])
     ratios = grid(parameters["window_ratio"])[::-1]
-    n_all, r_all = (each.reshape(-1, 1) for each in np.meshgrid(n, restitution, indexing="ij"))
+    n_all, r_all = (values.reshape(-1, 1) for values in np.meshgrid(n, restitution, indexing="ij"))
     contact = Contact(ratios, damping_of(r_all), "displacement")
     nodes, *_ = bifurcations(n_all[:, 0], "saddle-node", contact)
     above = nodes / saddle_node(n_all, r_all) - 1
-    found = np.full(len(above), np.nan)
+    window_ratio = np.full(len(above), np.nan)
     for row, share in enumerate(above):
         (some,) = np.nonzero(share > 0)
         if some.size:
             at = slice(some[0] - 1, some[0] + 1)
-            found[row] = np.exp(np.interp(0, share[at], np.log(ratios[at])))
+            window_ratio[row] = np.exp(np.interp(0, share[at], np.log(ratios[at])))
     example = parameters["example"]
     down = np.append(ratios[ratios > example["frequency_ratio"]], example["frequency_ratio"])
     contact = Contact(down, float(damping_of(example["restitution"])), "displacement")
     node = bifurcations(example["n"], "saddle-node", contact)[0, 0, -1]
     return xr.Dataset(
         {
-            "window_ratio": (("window_n", "window_restitution"), found.reshape(len(n), -1)),
+            "window_ratio": (("window_n", "window_restitution"), window_ratio.reshape(len(n), -1)),
             "example_n": example["n"],
             "example_restitution": example["restitution"],
             "example_ratio": example["frequency_ratio"],
@@ -155,8 +155,8 @@ def doublings(parameters: dict) -> xr.Dataset:
 
     def exact(table: Table, r: float, ratio: float) -> float:
         balls = SpringDamper(ratio, restitution=r), Rigid(r)
-        found = [limits(ball, n=n, table=table).period_doubling for ball in balls]
-        return ratio * (found[0].amplitude / found[1].amplitude - 1)
+        of_contact, of_model = (limits(ball, n=n, table=table).period_doubling for ball in balls)
+        return ratio * (of_contact.amplitude / of_model.amplitude - 1)
 
     example = tables["three harmonics"]
     r = parameters["sign_restitution"]

@@ -23,7 +23,7 @@ def random_orbits(parameters: dict, generator: np.random.Generator) -> xr.Datase
     wanted = parameters["orbits"]
     r_min, r_max = parameters["restitution"]
     first, last = parameters["position"]
-    found = []
+    orbits_by_n = []
     for n in parameters["n"]:
         # Next to the period doubling the contact's orbit has doubled: some are drawn in vain.
         r = generator.uniform(r_min, r_max, 2 * wanted)
@@ -32,7 +32,9 @@ def random_orbits(parameters: dict, generator: np.random.Generator) -> xr.Datase
         amplitude = low + place * (period_doubling(n, r) - low)
         ball = SpringDamper(parameters["frequency_ratio"], restitution=r)
         orbits = orbit(ball, amplitude=amplitude, n=n)
-        stable = [i for i, each in enumerate(orbits) if each.stable and each.admissible][:wanted]
+        stable = [
+            i for i, candidate in enumerate(orbits) if candidate.stable and candidate.admissible
+        ][:wanted]
         columns = {
             "n": np.full(len(stable), n),
             "restitution": r[stable],
@@ -41,8 +43,10 @@ def random_orbits(parameters: dict, generator: np.random.Generator) -> xr.Datase
             "phase": [orbits[i].phase for i in stable],
             "speed": [orbits[i].speeds[0] for i in stable],
         }
-        found.append(xr.Dataset({name: ("orbit", column) for name, column in columns.items()}))
-    return xr.concat(found, "orbit")
+        orbits_by_n.append(
+            xr.Dataset({name: ("orbit", column) for name, column in columns.items()})
+        )
+    return xr.concat(orbits_by_n, "orbit")
 
 
 def ext_basin(parameters: dict) -> xr.Dataset:
@@ -50,14 +54,15 @@ def ext_basin(parameters: dict) -> xr.Dataset:
     generator = np.random.default_rng(parameters["seed"])
     orbits = random_orbits(parameters, generator)
     starts = parameters["starts"]
-    each = orbits.isel(orbit=np.repeat(orbits.orbit, starts))
-    count = each.sizes["orbit"]
+    orbit_of_start = orbits.isel(orbit=np.repeat(orbits.orbit, starts))
+    count = orbit_of_start.sizes["orbit"]
     fastest = parameters["speed_max"] * np.pi
     balls = Balls(
         SpringDamper(
-            np.full(count, parameters["frequency_ratio"]), restitution=each.restitution.values
+            np.full(count, parameters["frequency_ratio"]),
+            restitution=orbit_of_start.restitution.values,
         ),
-        each.amplitude.values,
+        orbit_of_start.amplitude.values,
         np.zeros(count),
         generator.uniform(-np.pi, np.pi, count),
         generator.uniform(0, fastest, count),
@@ -67,8 +72,10 @@ def ext_basin(parameters: dict) -> xr.Dataset:
     for _ in range(parameters["impacts"] // parameters["block"]):
         record, going, balls = bounce(balls, parameters["block"])
         last = record[-LAST:]
-        turned = last[:, 1] - each.phase.values[left]
-        away = np.abs(np.exp(1j * turned) - 1) + np.abs(last[:, 2] / each.speed.values[left] - 1)
+        turned = last[:, 1] - orbit_of_start.phase.values[left]
+        away = np.abs(np.exp(1j * turned) - 1) + np.abs(
+            last[:, 2] / orbit_of_start.speed.values[left] - 1
+        )
         arrived = (away < NEAR).all(axis=0)
         on_orbit[left[arrived]] = True
         # The others go on, but for those that stay on the table.

@@ -123,7 +123,7 @@ class Known(Ball):
     def signature(self, u) -> Signature:
         """That of the unit contact, in other units."""
         r, *times = self.unit(u / self.speed)
-        return Signature(r, *(each * self.through for each in times))
+        return Signature(r, *(time * self.through for time in times))
 
 
 def by_polynomials(ball: Ball) -> Callable:
@@ -175,18 +175,18 @@ def errors_and_zeros(law: str, case: dict, ratios: NDArray) -> tuple[NDArray, ND
 
     They are NaN below the smallest π/(D + κ) above which all contacts have the orbit.
     """
-    found = errors(law, case, ratios)
-    missing = np.flatnonzero(np.isnan(found).any(axis=(0, 1)))
-    found[..., : missing.max(initial=-1) + 1] = np.nan
-    zeros = np.full(found.shape[:2], np.nan)
+    relative_errors = errors(law, case, ratios)
+    missing = np.flatnonzero(np.isnan(relative_errors).any(axis=(0, 1)))
+    relative_errors[..., : missing.max(initial=-1) + 1] = np.nan
+    zeros = np.full(relative_errors.shape[:2], np.nan)
     for model, quantity in np.ndindex(zeros.shape):
 
         def error(ratio: float, model=model, quantity=quantity) -> float:
             one = errors(law, case, np.array([ratio]), [QUANTITIES[quantity]])
             return float(one[model, 0, 0])
 
-        zeros[model, quantity] = last_zero(ratios, found[model, quantity], error)
-    return found, zeros
+        zeros[model, quantity] = last_zero(ratios, relative_errors[model, quantity], error)
+    return relative_errors, zeros
 
 
 # Thresholds
@@ -201,7 +201,7 @@ def thresholds(law: str, cases: list[dict], parameters: dict) -> tuple[NDArray, 
     units = [unit_contact(law, case["restitution"]) for case in rows]
     unit = units[0].at(
         **{
-            name: np.array([each.parameters[name] for each in units])
+            name: np.array([contact.parameters[name] for contact in units])
             for name in units[0].parameters
         }
     )
@@ -227,14 +227,14 @@ def thresholds(law: str, cases: list[dict], parameters: dict) -> tuple[NDArray, 
         return np.stack([flight_height(equations, z) - sought, z[:, -1] - calibrated], axis=-1)
 
     z = solved(equations, z, conditions)
-    found = z[:, -2]
+    threshold = z[:, -2]
     low, high = (parameters["frequency_ratio"][end] for end in ("min", "max"))
-    inside = (found >= low) & (found <= high)
+    inside = (threshold >= low) & (threshold <= high)
     stable = (
         inside & (np.abs(equations.turn(equations.linearized(z))) < 1) & equations.admissible(z)
     )
     shape = len(cases), len(CALIBRATIONS)
-    return np.where(inside, found, np.nan).reshape(shape), stable.reshape(shape)
+    return np.where(inside, threshold, np.nan).reshape(shape), stable.reshape(shape)
 
 
 def ext_laws(parameters: dict) -> xr.Dataset:
@@ -245,19 +245,25 @@ def ext_laws(parameters: dict) -> xr.Dataset:
     """
     ratios = grid(parameters["frequency_ratio"])
     cases = [parameters, *parameters["further"]]
-    found = [errors_and_zeros(law, parameters, ratios) for law in LAWS]
+    errors_by_law = [errors_and_zeros(law, parameters, ratios) for law in LAWS]
     heights = [thresholds(law, cases, parameters) for law in LAWS]
     by_case = ("case", "calibration", "law")
     return xr.Dataset(
         {
             "relative_error": (
                 ("law", "model", "quantity", "centroid_ratio"),
-                [np.abs(each) for each, _ in found],
+                [np.abs(error) for error, _ in errors_by_law],
             ),
-            "law_error_zero": (("law", "model", "quantity"), [zeros for _, zeros in found]),
+            "law_error_zero": (("law", "model", "quantity"), [zeros for _, zeros in errors_by_law]),
             "error_calibration": CALIBRATIONS[0],
-            "error_threshold": (by_case, np.stack([each for each, _ in heights], axis=-1)),
-            "stable_at_threshold": (by_case, np.stack([each for _, each in heights], axis=-1)),
+            "error_threshold": (
+                by_case,
+                np.stack([threshold for threshold, _ in heights], axis=-1),
+            ),
+            "stable_at_threshold": (
+                by_case,
+                np.stack([is_stable for _, is_stable in heights], axis=-1),
+            ),
         },
         {
             **{

@@ -72,7 +72,7 @@ def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:
     ball = SpringDamper(
         ratios, damping_ratio=damping_of(parameters["restitution"]), release=release
     )
-    found = errors(ball, amplitude, n)
+    relative_errors = errors(ball, amplitude, n)
     stiff = ball.at(frequency_ratio=STIFF)
     once, twice = (errors(stiff, amplitude, n)[1] * STIFF**2).T
     exact = stacked(exact_errors(stiff, amplitude=amplitude, n=n))
@@ -87,7 +87,7 @@ def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:
         error_thresholds(unit, simple=simple, samples=span["samples"], **search)
         for simple in MODELS.values()
     ]
-    zeros = np.full(found.shape[:2], np.nan)
+    zeros = np.full(relative_errors.shape[:2], np.nan)
     for model, quantity in np.ndindex(zeros.shape):
         name = QUANTITIES[quantity]
         simple = list(MODELS.values())[model]
@@ -96,10 +96,10 @@ def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:
             one = ball.at(frequency_ratio=ratio)
             return float(exact_errors(one, simple=simple, quantities=[name], **law)[name])
 
-        zeros[model, quantity] = last_zero(ratios, found[model, quantity], error)
+        zeros[model, quantity] = last_zero(ratios, relative_errors[model, quantity], error)
     both = ("model", "quantity")
     return {
-        "relative_error": ((*both, "frequency_ratio"), np.abs(found)),
+        "relative_error": ((*both, "frequency_ratio"), np.abs(relative_errors)),
         "coefficient": ("quantity", stacked(law_coefficients(unit, **law))),
         # The error is C/ϖ² and terms of third order, which are eliminated (Richardson).
         "second_order": ("quantity", 2 * twice - once),
@@ -108,11 +108,11 @@ def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:
         "law_threshold": ("quantity", stacked(law_thresholds(unit, tolerance=tolerance, **law))),
         "error_threshold": (
             both,
-            [[each.ratio for each in by_name.values()] for by_name in thresholds],
+            [[threshold.ratio for threshold in by_name.values()] for by_name in thresholds],
         ),
         "threshold_status": (
             both,
-            [[str(each.status) for each in by_name.values()] for by_name in thresholds],
+            [[str(threshold.status) for threshold in by_name.values()] for by_name in thresholds],
         ),
         "law_left": (("place", "quantity", "frequency_ratio"), [left, left_at_node]),
         "node_error": (("quantity", "frequency_ratio"), node_error),
@@ -148,7 +148,7 @@ def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "law_order": (
             ("place", "quantity", "sample"),
-            [np.log2(each[:, 0] / each[:, 1]) for each in (left, left_at_node)],
+            [np.log2(remainder[:, 0] / remainder[:, 1]) for remainder in (left, left_at_node)],
         ),
         "node_order": (("quantity", "sample"), np.log2(error[:, 0] / error[:, 1])),
         "order_frequency_ratio": ("pair", TWO_STIFF.ravel()),
@@ -163,9 +163,9 @@ def ext_orders(parameters: dict, release: str) -> xr.Dataset:
     What the law leaves is also computed at the saddle-node of the restitution model.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = of_the_orbit(parameters, release) | of_random_orbits(parameters, release)
+        variables = of_the_orbit(parameters, release) | of_random_orbits(parameters, release)
     return xr.Dataset(
-        found | of_permanent_contact(parameters, release),
+        variables | of_permanent_contact(parameters, release),
         {
             "model": list(MODELS),
             "place": ["orbit", "saddle-node"],

@@ -83,11 +83,11 @@ def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
 def at_orbits(quantities, equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
     """A function of equations and orbits, whose values are NaN in rows without an orbit."""
     known = np.isfinite(z[:, 0])
-    found = {}
+    columns = {}
     for name, values in quantities(equations.rows(known), z[known]).items():
-        found[name] = np.full(len(z), np.nan)
-        found[name][known] = values
-    return found
+        columns[name] = np.full(len(z), np.nan)
+        columns[name][known] = values
+    return columns
 
 
 def traces(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
@@ -126,17 +126,17 @@ def followed(ball: Ball, amplitude: float) -> dict[str, float]:
     The motion is given by the numbers of impacts and of periods of the table until it repeats; a
     ball at rest has no impacts. The time is that of the impact, or of the rest that follows it.
     """
-    found = simulate(
+    motion = simulate(
         ball,
         amplitude=amplitude,
         phase=START["phase"],
         velocity=START["velocity"],
         impacts=SETTLED,
     )
-    times = found.time.values
-    phases = found.impact_phase.values
-    speeds = -found.relative_impact_velocity.values
-    rests = found.status == "permanent contact"
+    times = motion.time.values
+    phases = motion.impact_phase.values
+    speeds = -motion.relative_impact_velocity.values
+    rests = motion.status == "permanent contact"
     last = int(np.isfinite(times).sum()) - 1 if rests else IMPACTS - 1
     end = times[last]
     periods, impacts = 1, 0
@@ -174,7 +174,7 @@ def balls() -> xr.Dataset:
         "restitution": Rigid(BALL["restitution"]),
         "spring-damper": SpringDamper(BALL["frequency_ratio"], restitution=BALL["restitution"]),
     }
-    ends = [[followed(ball, each) for each in AMPLITUDES] for ball in models.values()]
+    ends = [[followed(ball, amplitude) for amplitude in AMPLITUDES] for ball in models.values()]
     size = len(AMPLITUDES)
     given = {
         "ball_restitution": np.full(size, BALL["restitution"]),
@@ -186,7 +186,7 @@ def balls() -> xr.Dataset:
     return xr.Dataset(
         {name: ("motion", values) for name, values in given.items()}
         | {
-            name: (("model", "motion"), [[each[name] for each in row] for row in ends])
+            name: (("model", "motion"), [[end[name] for end in row] for row in ends])
             for name in ends[0][0]
         },
         {"model": list(models)},
@@ -202,9 +202,9 @@ def explorer(parameters: dict) -> xr.Dataset:
     """
     ratios = grid(parameters["frequency_ratio"])
     releases = ["displacement", "force"]
-    orbits = [under(each, ratios, parameters["seed"] + k) for k, each in enumerate(releases)]
-    found = xr.concat(orbits, "release").assign_coords(release=releases)
-    return found.merge(balls())
+    orbits = [under(release, ratios, parameters["seed"] + k) for k, release in enumerate(releases)]
+    data = xr.concat(orbits, "release").assign_coords(release=releases)
+    return data.merge(balls())
 
 
 STAGE = {"explorer": explorer}

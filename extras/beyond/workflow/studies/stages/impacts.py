@@ -25,21 +25,22 @@ def ext_impact(parameters: dict, release: str) -> xr.Dataset:
     """
     zeta = np.linspace(0.0, damping_of(parameters["restitution_min"]), parameters["samples"])
     along = [
-        SpringDamper(1.0, damping_ratio=zeta, release=each).signature(1.0) for each in RELEASES
+        SpringDamper(1.0, damping_ratio=zeta, release=condition).signature(1.0)
+        for condition in RELEASES
     ]
     given = damping_of(parameters["restitution"])
-    balls = [SpringDamper(1.0, damping_ratio=given, release=each) for each in RELEASES]
+    balls = [SpringDamper(1.0, damping_ratio=given, release=condition) for condition in RELEASES]
     ends = [ball.signature(1.0) for ball in balls]
     time = np.linspace(0.0, ends[0].duration, parameters["samples"])
     contact = balls[0].contact(0.0, 1.0, time, amplitude=0.0, gravity=0.0)
     shape = ("release", "damping_ratio")
     return xr.Dataset(
         {
-            "restitution": (shape, [each.restitution for each in along]),
-            "contact_duration": (shape, [each.duration for each in along]),
+            "restitution": (shape, [signature.restitution for signature in along]),
+            "contact_duration": (shape, [signature.duration for signature in along]),
             "free_force": ("time", force(balls[0], contact)),
-            "contact_end": ("release", [each.duration for each in ends]),
-            "end_restitution": ("release", [each.restitution for each in ends]),
+            "contact_end": ("release", [signature.duration for signature in ends]),
+            "end_restitution": ("release", [signature.restitution for signature in ends]),
         },
         {"release": RELEASES, "damping_ratio": zeta, "time": time},
     )
@@ -50,25 +51,25 @@ def ext_instant(parameters: dict, release: str) -> xr.Dataset:
     ratio = parameters["frequency_ratio"]
     amplitude = parameters["amplitude"]
     ball = SpringDamper(ratio, restitution=parameters["restitution"], release=release)
-    found = orbit(ball, amplitude=amplitude, n=parameters["n"])
-    end = found.contact_duration
+    contact_orbit = orbit(ball, amplitude=amplitude, n=parameters["n"])
+    end = contact_orbit.contact_duration
     # The ends of the contact are samples, if they are, whatever rounding does.
     share = np.linspace(-0.6, 1.6, parameters["samples"]).round(12)
     time = share * end
-    table = amplitude * np.sin(found.phase + time)
-    speed = -found.relative_impact_velocity
+    table = amplitude * np.sin(contact_orbit.phase + time)
+    speed = -contact_orbit.relative_impact_velocity
     inside = np.clip(time, 0, end)
-    contact = ball.contact(found.phase, speed, ratio * inside, amplitude)
-    start = amplitude * np.sin(found.phase)
-    before = start + (found.impact_velocity - time / 2) * time
-    last = ball.contact(found.phase, speed, ratio * end, amplitude)
-    bounce = amplitude * np.sin(found.phase + end) + last.gap
+    contact = ball.contact(contact_orbit.phase, speed, ratio * inside, amplitude)
+    start = amplitude * np.sin(contact_orbit.phase)
+    before = start + (contact_orbit.impact_velocity - time / 2) * time
+    last = ball.contact(contact_orbit.phase, speed, ratio * end, amplitude)
+    bounce = amplitude * np.sin(contact_orbit.phase + end) + last.gap
     since = time - end
-    after = bounce + (found.bounce_velocity - since / 2) * since
+    after = bounce + (contact_orbit.bounce_velocity - since / 2) * since
     touching = (share >= 0) & (share <= 1)
     # Both parabolas have the same curvature, so that they differ by a straight line.
-    jump = found.bounce_velocity + end - found.impact_velocity
-    apart = bounce - (start + (found.impact_velocity - end / 2) * end)
+    jump = contact_orbit.bounce_velocity + end - contact_orbit.impact_velocity
+    apart = bounce - (start + (contact_orbit.impact_velocity - end / 2) * end)
     meeting = end - apart / jump
     return xr.Dataset(
         {
@@ -79,7 +80,7 @@ def ext_instant(parameters: dict, release: str) -> xr.Dataset:
             "contact_force": ("time", np.where(touching, force(ball, contact), 0.0)),
             "contact_duration": end,
             "meeting_time": meeting,
-            "meeting_height": start + (found.impact_velocity - meeting / 2) * meeting,
+            "meeting_height": start + (contact_orbit.impact_velocity - meeting / 2) * meeting,
             "delay": ball.signature(speed).centroid,
         },
         {"time": time},

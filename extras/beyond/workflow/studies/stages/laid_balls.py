@@ -66,7 +66,7 @@ def stays_near(balls: Balls, impacts: NDArray) -> NDArray:
     beside = replace(balls, amplitude=balls.amplitude * (1 + OFFSET))
     for count in np.unique(impacts):
         some = np.flatnonzero(impacts == count)
-        both = [bounce(each.take(some), count) for each in (balls, beside)]
+        both = [bounce(neighbours.take(some), count) for neighbours in (balls, beside)]
         at, later = (times(record, after) for record, _, after in both)
         near[some] = np.abs(later - at).max(axis=0) < APART
     return near
@@ -78,7 +78,7 @@ def hops(balls: Balls, impacts: NDArray) -> NDArray:
     counted = np.arange(len(record))[:, np.newaxis] < impacts
     _, phase, _, _, duration, gap, w, time = np.moveaxis(record, 1, 0)
     waves = SINE.waves(phase + duration, balls.amplitude)
-    time, *state = (each[counted] for each in (time, gap, w, *waves))
+    time, *state = (values[counted] for values in (time, gap, w, *waves))
     gap, w, *waves = state
     sampled, _, _ = SINE.flights(SAMPLES * time, gap, w, waves)
     top = SAMPLES[sampled.argmax(axis=0), 0] * time
@@ -104,44 +104,51 @@ def motions(balls: Balls, contacts: int) -> dict[str, NDArray]:
     hop = np.where(kind == PERMANENT, 0.0, np.nan)
     at_end = replace(balls, phase=ends["end_phase"], speed=ends["end_speed"]).take(known)
     hop[known] = hops(at_end, ends["impacts"][known])
-    found = {name: np.where(np.isnan(hop), 0, ends[name]) for name in ("impacts", "periods")}
-    return found | {"hop": hop}
+    repeats = {name: np.where(np.isnan(hop), 0, ends[name]) for name in ("impacts", "periods")}
+    return repeats | {"hop": hop}
 
 
 def in_groups(balls: Balls, contacts: int) -> dict[str, NDArray]:
     """The motions of many balls, in groups that are small enough for compiled loops."""
     groups = np.array_split(np.arange(balls.phase.size), 1 + balls.phase.size // FEW_BALLS)
-    found = [motions(balls.take(group), contacts) for group in groups]
-    return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
+    motions_of_groups = [motions(balls.take(group), contacts) for group in groups]
+    return {
+        name: np.concatenate([of_group[name] for of_group in motions_of_groups])
+        for name in motions_of_groups[0]
+    }
 
 
 def on_contacts(r: float, amplitude: NDArray, ratio: NDArray, contacts: int) -> dict[str, NDArray]:
     """Motions of balls on a grid of contacts, shape (amplitude, ratio)."""
-    every, ratios = (each.ravel() for each in np.meshgrid(amplitude, ratio, indexing="ij"))
+    every, ratios = (values.ravel() for values in np.meshgrid(amplitude, ratio, indexing="ij"))
     ball = SpringDamper(ratios, restitution=r)
     shape = amplitude.size, ratio.size
-    found = {"impacts": np.zeros(shape, int), "periods": np.ones(shape, int)}
-    found |= {"hop": np.zeros(shape), "start_decides": np.zeros(shape, bool)}
+    laid = {"impacts": np.zeros(shape, int), "periods": np.ones(shape, int)}
+    laid |= {"hop": np.zeros(shape), "start_decides": np.zeros(shape, bool)}
     leaves = np.flatnonzero(every > permanent_contact(ratios, ball.zeta))
     for name, values in in_groups(lift_off(ball.rows(leaves), every[leaves]), contacts).items():
-        found[name].flat[leaves] = values
-    known = leaves[found["periods"].flat[leaves] > 0]
+        laid[name].flat[leaves] = values
+    known = leaves[laid["periods"].flat[leaves] > 0]
     other = in_groups(put_down(ball.rows(known), every[known]), contacts)
-    same = np.isclose(found["hop"].flat[known], other["hop"], rtol=SAME)
+    same = np.isclose(laid["hop"].flat[known], other["hop"], rtol=SAME)
     for name in ("impacts", "periods"):
-        same &= found[name].flat[known] == other[name]
-    found["start_decides"].flat[known] = ~same & (other["periods"] > 0)
-    return found
+        same &= laid[name].flat[known] == other[name]
+    laid["start_decides"].flat[known] = ~same & (other["periods"] > 0)
+    return laid
 
 
 def flying(r: float, amplitude: NDArray, ratio: NDArray) -> NDArray:
     """Hop on the stable 1-T orbit that flies for most of the period, NaN where there is none."""
-    every, ratios = (each.ravel() for each in np.meshgrid(amplitude, ratio, indexing="ij"))
+    every, ratios = (values.ravel() for values in np.meshgrid(amplitude, ratio, indexing="ij"))
     ball = SpringDamper(ratios, restitution=r)
-    found = orbit(ball, amplitude=every)
-    orbits = {i: each for i, each in enumerate(found) if isinstance(each, PeriodicOrbit)}
-    orbits = {i: each for i, each in orbits.items() if each.contact_duration < np.pi}
-    stable = [i for i, each in orbits.items() if each.stable and each.admissible]
+    orbits_or_reasons = orbit(ball, amplitude=every)
+    orbits = {
+        i: candidate
+        for i, candidate in enumerate(orbits_or_reasons)
+        if isinstance(candidate, PeriodicOrbit)
+    }
+    orbits = {i: candidate for i, candidate in orbits.items() if candidate.contact_duration < np.pi}
+    stable = [i for i, candidate in orbits.items() if candidate.stable and candidate.admissible]
     phase, speed = np.reshape([[orbits[i].phase, orbits[i].speeds[0]] for i in stable], (-1, 2)).T
     balls = Balls(ball.rows(stable), every[stable], 0 * phase, phase, speed)
     hop = np.full(every.size, np.nan)
@@ -184,13 +191,13 @@ def ext_laid(parameters: dict) -> xr.Dataset:
         for name in ("periods", "hop"):
             one[f"rigid_{name}"] = "amplitude", rigid[name]
         datasets.append(one)
-    found = xr.concat(datasets, "restitution")
+    data = xr.concat(datasets, "restitution")
     scanned = parameters["scan_restitution"]
     given = parameters["scan_positions"], np.array(parameters["scan_ratio"]), contacts
     scan = [along_flying(r, *given) for r in scanned]
     for name in scan[0]:
-        found[name] = "scan_restitution", [each[name] for each in scan]
-    return found.assign_coords(
+        data[name] = "scan_restitution", [summary[name] for summary in scan]
+    return data.assign_coords(
         scan_restitution=scanned,
         restitution=parameters["restitution"],
         amplitude=amplitude,

@@ -77,8 +77,8 @@ def left_by_law(waveform: Table, r: float, ratio: float) -> dict[str, float]:
         return float(contact_orbits(waveform, np.array([phase]), ball, 1).amplitude[0])
 
     phase = np.array([start + AFTER])
-    found = contact_orbits(waveform, phase, ball, 1)
-    law_phase, law_height = by_law(found.amplitude)
+    orbits = contact_orbits(waveform, phase, ball, 1)
+    law_phase, law_height = by_law(orbits.amplitude)
     # Λ has a minimum at the saddle-node, near which a parabola is right to the third order.
     nodes = start - delay + np.linspace(-1, 1, 5) / ratio
     curve = np.polyfit(nodes - nodes[2], contact_orbits(waveform, nodes, ball, 1).amplitude, 2)
@@ -88,7 +88,7 @@ def left_by_law(waveform: Table, r: float, ratio: float) -> dict[str, float]:
     at_node = brentq(lambda x: amplitude_at(x) - amplitude, *(start + steps), xtol=1e-15)
     return {
         "phase_left": float(ratio**2 * (phase - law_phase)[0]),
-        "height_left": float(ratio**2 * (found.max_height - law_height)[0]),
+        "height_left": float(ratio**2 * (orbits.max_height - law_height)[0]),
         "node_phase_left": float(ratio**1.5 * (at_node - by_law(np.array([amplitude]))[0][0])),
         "node_shift": float(ratio * (fold / amplitude - 1)),
     }
@@ -97,7 +97,7 @@ def left_by_law(waveform: Table, r: float, ratio: float) -> dict[str, float]:
 def any_waveform(parameters: dict) -> dict[str, tuple]:
     """These numbers by waveform, restitution coefficient and ϖ, and the shift by the law."""
     names = ("waveform", "restitution", "frequency_ratio")
-    found = [
+    remainders = [
         [
             [left_by_law(waveform, r, ratio) for ratio in parameters["frequency_ratio"]]
             for r in parameters["restitution"]
@@ -105,8 +105,8 @@ def any_waveform(parameters: dict) -> dict[str, tuple]:
         for waveform in WAVEFORMS.values()
     ]
     left = {
-        key: (names, [[[one[key] for one in row] for row in rows] for rows in found])
-        for key in found[0][0][0]
+        key: (names, [[[one[key] for one in row] for row in rows] for rows in remainders])
+        for key in remainders[0][0][0]
     }
     units = free_impact(SpringDamper(1.0, restitution=np.array(parameters["restitution"])), 1)
     return left | {"node_shift_law": ("restitution", -units.shift / units.line)}
@@ -121,15 +121,15 @@ def in_the_plane(parameters: dict) -> dict[str, tuple]:
     shares = np.array(parameters["shown_share"])
     ball = linear(r, 2 * np.pi * shares)
     phase = np.linspace(0.02, 1.0, parameters["samples"])
-    found = [
+    touch_amplitude = [
         contact_orbits(WAVEFORMS["sine"], phase, ball.at(frequency_ratio=ratio), 1).amplitude
         for ratio in np.ravel(ball.frequency_ratio)
     ]
     impact = free_impact(ball, 1)
     shape = ("shown_share", "point")
     return {
-        "touch_x": (shape, np.array(found) * np.cos(phase)),
-        "touch_y": (shape, np.array(found) * np.sin(phase)),
+        "touch_x": (shape, np.array(touch_amplitude) * np.cos(phase)),
+        "touch_y": (shape, np.array(touch_amplitude) * np.sin(phase)),
         "line_level": ("shown_share", impact.line - impact.shift),
         "line_angle": ("shown_share", impact.shift + impact.centroid),
         "restitution_line": ((), float(np.ravel(impact.line)[0])),
@@ -141,15 +141,15 @@ def levels(parameters: dict) -> dict[str, tuple]:
     ball = linear(parameters["shown_restitution"], 2 * np.pi * parameters["shown_share"][-1])
     impact = free_impact(ball, 1)
     angle = impact.shift + impact.centroid
-    found: dict[str, list] = {"steepness": [], "touch_slope": [], "turned_slope": []}
+    slopes: dict[str, list] = {"steepness": [], "touch_slope": [], "turned_slope": []}
     for waveform in WAVEFORMS.values():
         phase = waveform.steepest + np.linspace(0.05, 0.75, parameters["samples"]) - angle
         amplitude = contact_orbits(waveform, phase, ball, 1).amplitude
         scale = amplitude / impact.line
-        found["steepness"].append(scale * waveform(waveform.steepest, 1))
-        found["touch_slope"].append(scale * waveform(phase, 1))
-        found["turned_slope"].append(scale * waveform(phase + angle, 1))
-    return {name: (("waveform", "point"), values) for name, values in found.items()}
+        slopes["steepness"].append(scale * waveform(waveform.steepest, 1))
+        slopes["touch_slope"].append(scale * waveform(phase, 1))
+        slopes["turned_slope"].append(scale * waveform(phase + angle, 1))
+    return {name: (("waveform", "point"), values) for name, values in slopes.items()}
 
 
 # Measurements
@@ -188,7 +188,7 @@ def exact_contacts(parameters: dict) -> dict[str, tuple]:
     shares = np.array(parameters["contact_share"])
     shape = ("law", "restitution", "contact_share")
     sizes = len(LAWS), len(parameters["restitution"]), shares.size
-    found = {
+    readings = {
         name: np.empty(sizes)
         for name in ("angle_ratio", "found_restitution", "duration_ratio", "unturned_restitution")
     }
@@ -203,13 +203,13 @@ def exact_contacts(parameters: dict) -> dict[str, tuple]:
             for column, touches in enumerate(phase):
                 level, angle = reading(touches, amplitude)
                 at = place, row, column
-                found["angle_ratio"][at] = angle / true_angle[column]
-                found["found_restitution"][at], through = contact_of(level, angle)
-                found["duration_ratio"][at] = through / true_through[column]
+                readings["angle_ratio"][at] = angle / true_angle[column]
+                readings["found_restitution"][at], through = contact_of(level, angle)
+                readings["duration_ratio"][at] = through / true_through[column]
                 # X = C at the touch of the last orbit, as if the contact took no time.
                 line = amplitude[-1] * np.cos(touches[-1])
-                found["unturned_restitution"][at] = (np.pi - line) / (np.pi + line)
-    return {name: (shape, values) for name, values in found.items()}
+                readings["unturned_restitution"][at] = (np.pi - line) / (np.pi + line)
+    return {name: (shape, values) for name, values in readings.items()}
 
 
 def simulated_measurement(
@@ -238,9 +238,9 @@ def simulated_measurement(
             cosine += np.cos(heard)
             sine += np.sin(heard)
     mean_phase = np.arctan2(sine, cosine).reshape(given.runs, -1)
-    found = [contact_of(*reading(touches, levels_of)) for touches in mean_phase]
-    mean = np.mean(found, axis=0)
-    spread = np.std(found, axis=0, ddof=1)
+    measured = [contact_of(*reading(touches, levels_of)) for touches in mean_phase]
+    mean = np.mean(measured, axis=0)
+    spread = np.std(measured, axis=0, ddof=1)
     true = 2 * np.pi * share
     return {
         "measured_restitution": mean[0],
@@ -252,8 +252,11 @@ def simulated_measurement(
 
 def measurements(given: SimpleNamespace, generator: np.random.Generator) -> dict[str, tuple]:
     """Simulated measurements of balls with each r."""
-    found = [simulated_measurement(r, given, generator) for r in given.restitution]
-    return {name: ("restitution", [each[name] for each in found]) for name in found[0]}
+    measured = [simulated_measurement(r, given, generator) for r in given.restitution]
+    return {
+        name: ("restitution", [measurement[name] for measurement in measured])
+        for name in measured[0]
+    }
 
 
 # What thresholds do not tell
@@ -269,7 +272,7 @@ def counterfeit(parameters: dict) -> tuple:
     """D + κ of the linear contact with the same two bifurcations, over the true one."""
     r = parameters["shown_restitution"]
     shares = np.array(parameters["contact_share"])
-    found = []
+    ratios_of_laws = []
     for law in LAWS:
         ball = contacts(law, r, 2 * np.pi * shares)
         through = np.broadcast_to(free_impact(ball, 1).centroid * (1 + r) / r, shares.shape)
@@ -279,8 +282,8 @@ def counterfeit(parameters: dict) -> tuple:
                 lambda x, sought=sought: bifurcations(linear(*x)) - sought, [r, true], tol=1e-12
             )
             ratios.append(solution.x[1] / true if solution.success else np.nan)
-        found.append(ratios)
-    return ("law", "contact_share"), found
+        ratios_of_laws.append(ratios)
+    return ("law", "contact_share"), ratios_of_laws
 
 
 def width_change(parameters: dict) -> tuple:

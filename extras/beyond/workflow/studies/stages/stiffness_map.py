@@ -35,7 +35,7 @@ def ext_map(parameters: dict) -> xr.Dataset:
     high = period_doubling(n, r[:, np.newaxis])
     amplitude = low + position * (high - low)
     n_all, r_all, amplitude_all = (
-        each.reshape(-1, 1) for each in np.broadcast_arrays(n, r[:, np.newaxis], amplitude)
+        values.reshape(-1, 1) for values in np.broadcast_arrays(n, r[:, np.newaxis], amplitude)
     )
     contact = Contact.of_restitution(grid(parameters["frequency_ratio"]), r_all)
     family = Family(n_all, contact)
@@ -47,7 +47,7 @@ def ext_map(parameters: dict) -> xr.Dataset:
     inside = amplitude_all[:, 0] * (1 + NEXT)
     by_law = law_thresholds(unit, amplitude=inside, n=n_all[:, 0], tolerance=tolerance)
     nodes = ("n", "restitution", "position")
-    found = xr.Dataset(
+    data = xr.Dataset(
         {
             "amplitude": (nodes, amplitude),
             "saddle_node_amplitude": (nodes[:2], low[..., 0]),
@@ -57,13 +57,15 @@ def ext_map(parameters: dict) -> xr.Dataset:
         },
         {"n": parameters["n"], "restitution": r, "position": position},
     )
-    return found.merge(of_bifurcations(parameters, r))
+    return data.merge(of_bifurcations(parameters, r))
 
 
 def of_bifurcations(parameters: dict, r: np.ndarray) -> xr.Dataset:
     """Relative errors of saddle-node and period doubling by ϖ, exactly and by the law."""
     levels = np.unique([*LEVELS, parameters["paper"]])
-    n_all, r_all = (each.reshape(-1, 1) for each in np.meshgrid(parameters["n"], r, indexing="ij"))
+    n_all, r_all = (
+        values.reshape(-1, 1) for values in np.meshgrid(parameters["n"], r, indexing="ij")
+    )
     contact = Contact.of_restitution(levels, r_all)
     impact = free_impact(SpringDamper(levels, restitution=r_all), n_all)
     law = law_errors(impact, amplitude=period_doubling(n_all, r_all))

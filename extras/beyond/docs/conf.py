@@ -116,15 +116,15 @@ def prepare(app, name, text):
     """
     folder = Path(name).parent
 
-    def link(found):
-        path, _, place = found[2].partition("#")
+    def link(match):
+        path, _, place = match[2].partition("#")
         if not path:
-            return found[0]
+            return match[0]
         target = Path(os.path.normpath(folder / path))
         if str(target) == EXPLORER:
             up = os.path.relpath("explorer.html", folder)
-            return f'<a href="{up}{"#" * bool(place)}{place}">{found[1]}</a>'
-        return found[1] if (ROOT / target).is_dir() else found[0]
+            return f'<a href="{up}{"#" * bool(place)}{place}">{match[1]}</a>'
+        return match[1] if (ROOT / target).is_dir() else match[0]
 
     text[0] = re.sub(r"(?<!!)\[([^]]*)\]\(([^):\s]+)\)", link, text[0])
     text[0] = text[0].replace("</a> (download and open it)", "</a>")
@@ -188,8 +188,8 @@ def explorer(app, failure):
     """The explorer is at the top of the site, where its ways out lead to pages of the site."""
     folder = Path(EXPLORER).parent
 
-    def to_page(found):
-        return f'href="{os.path.normpath(folder / found[1])}.html"'
+    def to_page(match):
+        return f'href="{os.path.normpath(folder / match[1])}.html"'
 
     text = (ROOT / EXPLORER).read_text(encoding="utf-8")
     text = re.sub(r'href="(\.\./[^"]*)\.md"', to_page, text)

@@ -82,7 +82,7 @@ def text(value: float) -> str:
 
 def main() -> None:
     rounds = [{name: seconds(call) for name, call in CALLS.items()} for _ in range(ROUNDS)]
-    rows = [f"| {name} | {text(median(each[name] for each in rounds))} |" for name in CALLS]
+    rows = [f"| {name} | {text(median(times[name] for times in rounds))} |" for name in CALLS]
     PAGE.write_text(
         f"""# How long a call takes
 

@@ -7,13 +7,13 @@ from paper_replication.drawing import SETTINGS, legend_below, panels
 
 plt.style.use(SETTINGS)
 
-found = bb.basins(bb.Rigid(0.85), amplitude=0.95, starts=120)
+basins = bb.basins(bb.Rigid(0.85), amplitude=0.95, starts=120)
 figure, axes = panels(3.6)
-found.destination.plot(ax=axes, add_colorbar=False, cmap="viridis")
+basins.destination.plot(ax=axes, add_colorbar=False, cmap="viridis")
 colours = plt.get_cmap("viridis")
-count = max(found.sizes["motion"] - 1, 1)
-for motion in found.motion.values:
-    one = found.sel(motion=motion)
+count = max(basins.sizes["motion"] - 1, 1)
+for motion in basins.motion.values:
+    one = basins.sel(motion=motion)
     label = one.kind.item()
     if one.impacts > 0:
         label += f": k = {one.impacts.item()}, m = {one.periods.item()}"

@@ -12,9 +12,9 @@ amplitudes = np.linspace(1.48, 1.76, 400)
 ball = bb.Rigid(0.5)
 beside = bb.limits(ball).period_doubling.phase + 0.01
 impacts = bb.motion_of(ball, amplitude=amplitudes, phase=beside).impacts
-found = bb.simulate(ball, amplitude=amplitudes, phase=beside, impacts=600)
+motions = bb.simulate(ball, amplitude=amplitudes, phase=beside, impacts=600)
 figure, axes = panels(2.6)
-axes.plot(amplitudes, found.impact_phase[:, -64:] / np.pi, "k.", markersize=0.5)
+axes.plot(amplitudes, motions.impact_phase[:, -64:] / np.pi, "k.", markersize=0.5)
 for number in (2, 4, 8):
     first = float(impacts.amplitude[impacts == number].min())
     axes.axvline(first, **GUIDE)

@@ -11,11 +11,11 @@ from paper_replication.drawing import COLOURS, SETTINGS, panels
 plt.style.use(SETTINGS)
 
 ball = bb.SpringDamper(restitution=0.85, frequency_ratio=20.0)
-found = bb.drop(ball, height=8.0, periods=3.5, samples=5000)
-height = found.ball.values
-time = found.time.values
+motion = bb.drop(ball, height=8.0, periods=3.5, samples=5000)
+height = motion.ball.values
+time = motion.time.values
 tops = np.flatnonzero((height[1:-1] > height[:-2]) & (height[1:-1] > height[2:])) + 1
-tops = np.append(0, tops[~found.contact.values[tops]])[:4]
+tops = np.append(0, tops[~motion.contact.values[tops]])[:4]
 figure, axes = panels(2.6)
 axes.plot(time, height, color=COLOURS[1])
 axes.plot(time[tops], height[tops], "o", color=COLOURS[1], markersize=4)

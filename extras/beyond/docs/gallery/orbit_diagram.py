@@ -8,9 +8,9 @@ from paper_replication.drawing import SETTINGS, panels
 
 plt.style.use(SETTINGS)
 
-found = bb.orbit_diagram(bb.Rigid(0.7), amplitude=np.linspace(0.4, 2.0, 200))
-phases = found.impact_phase.stack(landing=("start", "impact"))
+diagram = bb.orbit_diagram(bb.Rigid(0.7), amplitude=np.linspace(0.4, 2.0, 200))
+phases = diagram.impact_phase.stack(landing=("start", "impact"))
 figure, axes = panels(2.6)
-axes.plot(found.amplitude, phases / np.pi, "k.", markersize=0.5)
+axes.plot(diagram.amplitude, phases / np.pi, "k.", markersize=0.5)
 axes.set(xlabel="amplitude Λ", ylabel="phase of impact over π", title="r = 0.7")
 figure.savefig("orbit_diagram.png")

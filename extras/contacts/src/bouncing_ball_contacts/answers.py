@@ -140,17 +140,17 @@ class Answer:
         change = self.change
         paste = [change.snippet if change else self.snippet]
         also = []
-        for each in self.also:
-            depth = show(max(each.outcome.depth, default=0.0), "m")
-            does = f"gives r = {each.outcome.restitution}" if each.gives else f"sinks {depth}"
-            step = show(each.time_step, "s").replace(" ", "")
+        for answer in self.also:
+            depth = show(max(answer.outcome.depth, default=0.0), "m")
+            does = f"gives r = {answer.outcome.restitution}" if answer.gives else f"sinks {depth}"
+            step = show(answer.time_step, "s").replace(" ", "")
             also.append(f"Also good: --time-step {step} {does}.")
             # Another step has lines of its own.
-            also.append(each.snippet if explain or not any(paste) else "")
+            also.append(answer.snippet if explain or not any(paste) else "")
         least = [f"Least change: {change.gives}."] if change else []
-        warnings = [f"! {each}" for each in self.warnings]
+        warnings = [f"! {warning}" for warning in self.warnings]
         first = [*warnings[: most - bool(not_for)], *not_for]
-        more = [*warnings[most - bool(not_for) :], *(f"{each}." for each in self.remarks)]
+        more = [*warnings[most - bool(not_for) :], *(f"{remark}." for remark in self.remarks)]
         not_run = [f"! {self.ran}"] * self.ran.startswith("not run")
         return [self.result, *not_run, *least, *filter(None, [*paste, *also]), *first, *more]
 

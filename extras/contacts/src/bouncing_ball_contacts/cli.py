@@ -68,15 +68,15 @@ def main(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-def _plain(found: Any) -> Any:
+def _plain(answers: Any) -> Any:
     """Return the fields of an answer, or of a dictionary of answers."""
-    if isinstance(found, dict):
-        return {name: _plain(each) for name, each in found.items()}
-    return dataclasses.asdict(found)
+    if isinstance(answers, dict):
+        return {name: _plain(answer) for name, answer in answers.items()}
+    return dataclasses.asdict(answers)
 
 
 def _print(
-    found: Any,
+    answers: Any,
     as_json: bool,
     explain: bool,
     written: Answer | None = None,
@@ -85,16 +85,16 @@ def _print(
     """Print answers: of one ball or of several, what was heard, and what to write for an engine."""
     if as_json:
         beside = {"heard": heard, "design": written}
-        values = _plain(found) | {name: _plain(each) for name, each in beside.items() if each}
+        values = _plain(answers) | {name: _plain(part) for name, part in beside.items() if part}
         # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
         text = json.dumps(values, default=lambda array: array.tolist())
         plain = json.loads(text, parse_constant=lambda _: None)
         click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
         return
-    answers = list(found.items()) if isinstance(found, dict) else [("", found)]
+    named = list(answers.items()) if isinstance(answers, dict) else [("", answers)]
     if written is not None:
-        answers.append(("", written))
-    texts = [f"{name}\n{each.explained if explain else each}" for name, each in answers]
+        named.append(("", written))
+    texts = [f"{name}\n{answer.explained if explain else answer}" for name, answer in named]
     said: set[str] = set()
     for line in "\n\n".join(text.lstrip("\n") for text in texts).split("\n"):
         # A note on each of several balls is printed for the first one.
@@ -104,9 +104,9 @@ def _print(
         said.add(note)
 
 
-def _status(found: Answer) -> int:
+def _status(answer: Answer) -> int:
     """Return the exit status: 1 if r is not kept and nothing is written to paste."""
-    return int(not (found.is_kept or found.snippet or found.change or found.also))
+    return int(not (answer.is_kept or answer.snippet or answer.change or answer.also))
 
 
 @main.command(
@@ -133,14 +133,14 @@ def design_command(
     **bounce: Any,
 ) -> int:
     """Write the contact of an engine, or its restitution number, for the bounce that you want."""
-    found = design(Bounce(**bounce), engine, time_step, pixels=pixels)
-    _print(found, as_json, explain)
-    return _status(found)
+    answer = design(Bounce(**bounce), engine, time_step, pixels=pixels)
+    _print(answer, as_json, explain)
+    return _status(answer)
 
 
 def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
     """Return names and values of texts NAME=VALUE."""
-    found: dict[str, str] = {}
+    assignments: dict[str, str] = {}
     for text in pairs:
         name, equals, value = map(str.strip, text.partition("="))
         refuse(
@@ -149,11 +149,11 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
                     not (equals and name),
                     f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or 'Zeit=t (s)'",
                 ),
-                (name in found, f"{name} is given twice"),
+                (name in assignments, f"{name} is given twice"),
             ]
         )
-        found[name] = value
-    return found
+        assignments[name] = value
+    return assignments
 
 
 @main.command(
@@ -187,9 +187,9 @@ def diagnose_command(
     """
     beside = _assigned(other) if other or one_body else None
     typed = _assigned(parameters)
-    found = diagnose(Bounce(**bounce), engine, typed, time_step, other=beside)
-    _print(found, as_json, explain)
-    return _status(found)
+    answer = diagnose(Bounce(**bounce), engine, typed, time_step, other=beside)
+    _print(answer, as_json, explain)
+    return _status(answer)
 
 
 def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Path]]:
@@ -275,7 +275,7 @@ def fit_command(
     from bouncing_ball_contacts.recordings import read
     from bouncing_ball_contacts.tables import typed_readings
 
-    are_files = len(recording) > 1 and all(Path(each).is_file() for each in recording)
+    are_files = len(recording) > 1 and all(Path(path).is_file() for path in recording)
     is_typed = len(recording) > 1 and not are_files
     source = typed_readings(recording) if is_typed else recording[0]
     heard = None
@@ -304,10 +304,10 @@ def fit_command(
         return
     if len(fits) > 1:
         raise Refused(f"there are {', '.join(fits)}: a contact is written for one, --ball")
-    (found,) = fits.values()
+    (fitted,) = fits.values()
     # The contact time of a recording is for springs.
-    bounce = found.bounce(is_spring=rows_of(engine)[1] is None)
-    _print(found, as_json, explain, design(bounce, engine, time_step), heard)
+    bounce = fitted.bounce(is_spring=rows_of(engine)[1] is None)
+    _print(fitted, as_json, explain, design(bounce, engine, time_step), heard)
 
 
 @main.command("engines", params=[click.Argument(["name"], required=False)])
@@ -328,10 +328,10 @@ def engines_command(name: str | None) -> None:
         click.echo(f"    two bodies: {'; '.join(rules) or PAIR.text}")
     if of_number:
         click.echo("\nWith a restitution by number, which counts above the threshold:")
-    for each in of_number:
-        click.echo(f"{each.name}: {each.parameter}, threshold {each.limit(each.threshold)}")
-        click.echo(f"    {ran_in(each)}")
-        click.echo(f"    two bodies: {each.pair.text}")
+    for engine in of_number:
+        click.echo(f"{engine.name}: {engine.parameter}, threshold {engine.limit(engine.threshold)}")
+        click.echo(f"    {ran_in(engine)}")
+        click.echo(f"    two bodies: {engine.pair.text}")
 
 
 _MEANT = {

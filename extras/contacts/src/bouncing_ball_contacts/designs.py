@@ -142,34 +142,34 @@ class Problem:
 
     def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:
         """Return the outcome of a contact at a time step in s."""
-        found = self.drops(law, step, trials)
-        force = found.peak * self.bounce.mass
+        drops = self.drops(law, step, trials)
+        force = drops.peak * self.bounce.mass
         rest = float(np.max(law.rest(self.bounce.gravity))) if self.bounce.gravity else 0.0
         # A contact of MuJoCo hardly feels gravity: the body hops by what this moves it in a step.
         hop = self.bounce.gravity * step**2 if isinstance(law, Impedance) else 0.0
         is_resolved = rest == 0 or rest >= max(self.engine.resolution * self.bounce.size, hop)
         return Outcome(
             # A body that creeps is not followed until it is at rest.
-            depth=(float(found.depth.min()), max(float(found.depth.max()), rest)),
+            depth=(float(drops.depth.min()), max(float(drops.depth.max()), rest)),
             rest=rest if is_resolved else None,
             force=(float(force.min()), float(force.max())),
-            restitution=Range.of(found.restitution),
+            restitution=Range.of(drops.restitution),
         )
 
-    def at_rest(self, law: Law, step: float, found: Outcome) -> tuple[str, bool]:
+    def at_rest(self, law: Law, step: float, outcome: Outcome) -> tuple[str, bool]:
         """Return what a body at rest does, and whether it hops by more than 1 % of its size.
 
         A contact of MuJoCo throws back the speed g h of each step of gravity. A rebound keeps r of
         a speed, so the body leaves with up to g h/(1 - r). In MuJoCo 4.0.0 bodies lie still if they
         lie deeper than 8 g h², and some also above.
         """
-        lies = "" if found.rest is None else f"at rest it lies {show(found.rest, 'm')} deep"
+        lies = "" if outcome.rest is None else f"at rest it lies {show(outcome.rest, 'm')} deep"
         fall = self.bounce.gravity * step
         if not fall:
             return "", False
-        if not isinstance(law, Impedance) or (found.rest or 0.0) >= 8 * fall * step:
+        if not isinstance(law, Impedance) or (outcome.rest or 0.0) >= 8 * fall * step:
             return lies, False
-        speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
+        speed = fall / max(1 - outcome.restitution.mean, LEAST_RESTITUTION)
         height = speed**2 / (2 * self.bounce.gravity)
         hops = f"hops by up to about {show(height, 'm', 2)}: less at a shorter step"
         said = f"{lies}, or {hops}" if lies else f"at rest it {hops}"
@@ -217,12 +217,12 @@ class Problem:
     def _scanned(self, depth: float, ratios: Array, step: float) -> tuple[float, bool]:
         """Return the ratio of damping of a scan, and whether r falls to the wanted one in it."""
         wanted = self.bounce.restitution
-        found = self.drops(self.law(depth, ratios), step, _SEARCH)
-        falling = np.minimum.accumulate(found.mean)
+        drops = self.drops(self.law(depth, ratios), step, _SEARCH)
+        falling = np.minimum.accumulate(drops.mean)
         falls = bool(falling[-1] <= wanted)
         if falls and wanted > self.tolerance:
             return float(np.interp(-wanted, -falling, ratios)), falls
-        errors = found.error(wanted)
+        errors = drops.error(wanted)
         # r is printed with three digits.
         return float(np.median(ratios[errors <= errors.min() + 1e-3])), falls
 
@@ -240,10 +240,10 @@ class Problem:
         """Maximum depth in m; infinite for a contact that was given."""
         return self.bounce.limit if self.given_depth is None else math.inf
 
-    def keeps(self, found: Outcome, depth: float) -> bool:
+    def keeps(self, outcome: Outcome, depth: float) -> bool:
         """Return whether r is within the tolerance, and the depth at most `depth`."""
-        deviation = found.restitution.deviation(self.bounce.restitution)
-        return deviation <= self.tolerance and found.depth[1] <= depth
+        deviation = outcome.restitution.deviation(self.bounce.restitution)
+        return deviation <= self.tolerance and outcome.depth[1] <= depth
 
     def step_of(self, count: float) -> Callable[[float], float]:
         """Return the step, as a function of the undamped depth, of a contact of `count` steps."""
@@ -290,9 +290,9 @@ class Problem:
                 tried.append(contact)
         return min(
             tried,
-            key=lambda each: (
-                each.outcome.depth[1] > self.permitted,
-                each.outcome.restitution.deviation(self.bounce.restitution),
+            key=lambda candidate: (
+                candidate.outcome.depth[1] > self.permitted,
+                candidate.outcome.restitution.deviation(self.bounce.restitution),
             ),
         )
 
@@ -309,8 +309,8 @@ class Problem:
             return self.at(count * step / self.duration, step)
 
         def is_enough(count: float) -> bool:
-            found = contact(count).outcome
-            return self.keeps(found, math.inf) or found.depth[1] > deepest
+            outcome = contact(count).outcome
+            return self.keeps(outcome, math.inf) or outcome.depth[1] > deepest
 
         place = bisect_left(_FINE_COUNTS, True, key=is_enough)
         return contact(_FINE_COUNTS[min(place, len(_FINE_COUNTS) - 1)])
@@ -332,29 +332,31 @@ class Problem:
         def contact(halvings: int) -> Candidate:
             shorter = _written(step / 2**halvings)
             # With the fewest steps a contact is the least deep.
-            found = self.at(_FINE_COUNTS[0] * shorter / self.duration, shorter)
-            if found.outcome.depth[1] <= self.bounce.size:
-                found = self.keeping(lambda _: shorter, near=short)
-                if not self.keeps(found.outcome, self.permitted):
-                    found = self.stiffest(shorter, self.bounce.size)
-            return found
+            candidate = self.at(_FINE_COUNTS[0] * shorter / self.duration, shorter)
+            if candidate.outcome.depth[1] <= self.bounce.size:
+                candidate = self.keeping(lambda _: shorter, near=short)
+                if not self.keeps(candidate.outcome, self.permitted):
+                    candidate = self.stiffest(shorter, self.bounce.size)
+            return candidate
 
         def is_held(halvings: int) -> bool:
-            found = contact(halvings).outcome
+            outcome = contact(halvings).outcome
             # A ball that sinks by more than its radius may leave a table on its other side.
-            return self.keeps(found, self.bounce.size) and (found.rest or 0.0) < self.bounce.size
+            return (
+                self.keeps(outcome, self.bounce.size) and (outcome.rest or 0.0) < self.bounce.size
+            )
 
         longer = max(math.ceil(math.log2(step / short.step)), 1)
         place = bisect_left(range(longer), True, key=is_held)
         return short if place == longer else contact(place)
 
-    def promised(self, found: Outcome, speed: float | None = None) -> tuple[float, float]:
+    def promised(self, outcome: Outcome, speed: float | None = None) -> tuple[float, float]:
         """Return the smallest and the largest r of bodies that slide at up to `speed`.
 
         The speed is in units of the speed of the fall; by default it is the smallest one for which
         the engine has a range.
         """
-        low, _, high = found.restitution
+        low, _, high = outcome.restitution
         sliding = self.engine.sliding
         if self.bounce.friction == 0 or not sliding.speeds:
             return low, high
@@ -389,8 +391,8 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
             chosen = yours
         elif not bounce.gives_contact:
             chosen = problem.between(asked, short)
-    found = answer(problem, chosen, asked)
-    deepest = found.outcome.depth[1]
+    design = answer(problem, chosen, asked)
+    deepest = design.outcome.depth[1]
     if bounce.contact_time and deepest > bounce.size:
         raise Refused(
             f"this contact sinks {show(deepest, 'm')}, deeper than the {bounce.size_name} of "
@@ -398,16 +400,16 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
         )
     # A row for what is given, or one that is not deeper than permitted.
     also: tuple[Answer, ...] = ()
-    if short.step < chosen.step and not problem.keeps(found.outcome, problem.permitted):
+    if short.step < chosen.step and not problem.keeps(design.outcome, problem.permitted):
         # Its step alone is typed, which asks for the whole depth that is permitted.
         less = problem.keeping(lambda _: short.step)
-        if problem.keeps(less.outcome, min(problem.permitted, 0.9 * found.outcome.depth[1])):
+        if problem.keeps(less.outcome, min(problem.permitted, 0.9 * design.outcome.depth[1])):
             also = (answer(problem, less, asked),)
     if asked is not None and bounce.gives_contact and chosen is short:
         stiffest = problem.stiffest(asked, problem.deepest)
         if problem.keeps(stiffest.outcome, problem.deepest):
             also = (answer(problem, stiffest, asked),)
-    return replace(found, also=also)
+    return replace(design, also=also)
 
 
 def answer(problem: Problem, contact: Candidate, asked: float | None) -> Answer:

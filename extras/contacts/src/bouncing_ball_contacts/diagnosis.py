@@ -144,8 +144,8 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Found:
-    """Numbers of a contact.
+class Behaviour:
+    """Behaviour of a contact.
 
     Attributes
     ----------
@@ -207,7 +207,7 @@ def diagnose_spring(
         step=bounce.step(time_step),
     )
     spring = _spring(contact.law)
-    found = Found(
+    behaviour = Behaviour(
         outcome=contact.outcome(),
         limit=_in_short_steps(contact, bounce.gravity),
         free=_in_short_steps(contact, 0.0),
@@ -215,12 +215,12 @@ def diagnose_spring(
         damping_ratio=float(spring.damping / spring.stiffness**0.5 / 2),
     )
     wanted = bounce.restitution
-    lost = problem.lost * (found.outcome.depth[1] > problem.deepest)
+    lost = problem.lost * (behaviour.outcome.depth[1] > problem.deepest)
     change = None
-    is_off = wanted is not None and found.outcome.restitution.deviation(wanted) > TOLERANCE
-    meant = _guesses(contact, found) if is_off and not lost else []
-    causes = [] if lost else [*_friction(contact, found), *_causes(contact, found)]
-    of_r = [*_dangers(contact, found), *meant, *causes]
+    is_off = wanted is not None and behaviour.outcome.restitution.deviation(wanted) > TOLERANCE
+    meant = _guesses(contact, behaviour) if is_off and not lost else []
+    causes = [] if lost else [*_friction(contact, behaviour), *_causes(contact, behaviour)]
+    of_r = [*_dangers(contact, behaviour), *meant, *causes]
     if is_off and not lost:
         change = _least_change(contact)
         if change is None or change.time_step != contact.step:
@@ -234,18 +234,18 @@ def diagnose_spring(
         bounce=bounce,
         time_step=contact.step,
         parameters=contact.one,
-        outcome=found.outcome,
-        warnings=(*of_r, *_facts(contact, found)),
-        remarks=tuple(_remarks(contact, found, given, differs)),
+        outcome=behaviour.outcome,
+        warnings=(*of_r, *_facts(contact, behaviour)),
+        remarks=tuple(_remarks(contact, behaviour, given, differs)),
         change=change,
         lost=lost,
         numbers={
             name: value
             for name, value in {
-                "stiffness": found.stiffness,
-                "damping_ratio": found.damping_ratio,
-                "limit": found.limit,
-                "free": found.free,
+                "stiffness": behaviour.stiffness,
+                "damping_ratio": behaviour.damping_ratio,
+                "limit": behaviour.limit,
+                "free": behaviour.free,
             }.items()
             if not math.isnan(value)
         },
@@ -253,7 +253,7 @@ def diagnose_spring(
 
 
 def _remarks(
-    contact: Contact, found: Found, given: Parameters, differs: Parameters | None
+    contact: Contact, behaviour: Behaviour, given: Parameters, differs: Parameters | None
 ) -> list[str]:
     """Return what was given and assumed, and what else is known of a contact."""
     engine = contact.problem.engine
@@ -268,16 +268,16 @@ def _remarks(
         [
             (defaults, f"the defaults {_assigned(defaults)}"),
             (others and rest, f"of the other body the defaults {_assigned(rest)}"),
-            *((True, each) for each in bounce.assumed),
+            *((True, assumption) for assumption in bounce.assumed),
         ]
     )
-    rests, hops = contact.problem.at_rest(contact.law, contact.step, found.outcome)
+    rests, hops = contact.problem.at_rest(contact.law, contact.step, behaviour.outcome)
     return holding(
         [
             (
-                math.isfinite(found.stiffness),
-                f"The contact has k = {show(found.stiffness, 'N/m')} and a damping ratio of "
-                f"{found.damping_ratio:.3g}; in short steps r is {found.limit:.3f}",
+                math.isfinite(behaviour.stiffness),
+                f"The contact has k = {show(behaviour.stiffness, 'N/m')} and a damping ratio of "
+                f"{behaviour.damping_ratio:.3g}; in short steps r is {behaviour.limit:.3f}",
             ),
             (rests and not hops, rests[:1].upper() + rests[1:]),
             *((True, note) for note in engine.notes),
@@ -312,8 +312,8 @@ def _given(engine: Engine, typed: Mapping[str, Any], is_other: bool = False) -> 
         known,
         typed,
     )
-    found = {name: _value(engine, name, value) for name, value in raw.items()}
-    body = {**engine.defaults, **found}
+    given = {name: _value(engine, name, value) for name, value in raw.items()}
+    body = {**engine.defaults, **given}
     missing = [name for name in engine.rules if name not in body]
     refuse(
         [
@@ -323,12 +323,12 @@ def _given(engine: Engine, typed: Mapping[str, Any], is_other: bool = False) -> 
                 "has no default",
             ),
             (
-                engine.name == "pybullet" and len(found.keys() & set(engine.names)) == 1,
+                engine.name == "pybullet" and len(given.keys() & set(engine.names)) == 1,
                 f"{engine.name} refuses {' or '.join(engine.names)} alone: give both",
             ),
         ]
     )
-    return found
+    return given
 
 
 def _converted(engine: Engine, given: dict[str, Any], at: Setting) -> dict[str, Any]:
@@ -372,7 +372,7 @@ def _vector(name: str, value: Any) -> tuple[float, ...]:
     """Return the numbers of a text, which may have brackets, commas or quotes."""
     if isinstance(value, str):
         value = re.findall(r"[^\s,()\[\]\"']+", value)
-    numbers = tuple(in_si(name, each, "") for each in np.atleast_1d(np.asarray(value, object)))
+    numbers = tuple(in_si(name, number, "") for number in np.atleast_1d(np.asarray(value, object)))
     least, most, words = _VECTORS[name]
     refuse([(not least <= len(numbers) <= most, f"{name} has {words}, not {len(numbers)}")])
     if name != "solref":
@@ -422,14 +422,14 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     scheme = contact.problem.engine.scheme
     explicit = scheme if isinstance(scheme, SemiImplicit) else SemiImplicit()
     # A damper may be too strong for explicit steps.
-    for each in (explicit, scheme):
-        whole, half = drop(law, each, step, speed, gravity, _BOTH).restitution.reshape(2, -1)
+    for integrator in (explicit, scheme):
+        whole, half = drop(law, integrator, step, speed, gravity, _BOTH).restitution.reshape(2, -1)
         if max(whole.mean(), half.mean()) <= 1 + TOLERANCE:
             break
     return max(float(2 * half.mean() - whole.mean()), 0.0)
 
 
-def _causes(contact: Contact, found: Found) -> Iterator[str]:
+def _causes(contact: Contact, behaviour: Behaviour) -> Iterator[str]:
     """Yield what changes r visibly, by taking away one thing after another."""
     row = contact.problem.engine
     # MuJoCo's impedance is a part of its spring, and stays.
@@ -441,8 +441,11 @@ def _causes(contact: Contact, found: Found) -> Iterator[str]:
         contact = replace(contact, one={**contact.one, name: value}, other=other)
         instead = f"; {_WHY.get(name, '')}designs have {_spelled(value)}"
         without.append((what, contact.outcome().restitution.mean, instead))
-    without += [("the step", found.limit, ""), ("gravity during the contact", found.free, "")]
-    r = found.outcome.restitution.mean
+    without += [
+        ("the step", behaviour.limit, ""),
+        ("gravity during the contact", behaviour.free, ""),
+    ]
+    r = behaviour.outcome.restitution.mean
     for what, less, instead in without:
         if abs(r - less) > _VISIBLE:
             how = "lowers" if r < less else "raises"
@@ -450,21 +453,21 @@ def _causes(contact: Contact, found: Found) -> Iterator[str]:
         r = less
 
 
-def _dangers(contact: Contact, found: Found) -> list[str]:
+def _dangers(contact: Contact, behaviour: Behaviour) -> list[str]:
     """Return what makes a contact useless in a scene."""
     bounce = contact.problem.bounce
-    high = found.outcome.restitution.high
+    high = behaviour.outcome.restitution.high
     law = contact.law
     typed = contact.one.get("solimp", ())
     ends = (law.low, law.high) if isinstance(law, Impedance) else ()
-    is_clipped = any(not 0 <= each <= 1 for each in typed[:2])
+    is_clipped = any(not 0 <= impedance <= 1 for impedance in typed[:2])
     is_wide = isinstance(law, Impedance) and law.low != law.high and law.width > bounce.size
     return holding(
         [
             (
                 is_clipped,
                 f"the impedances of solimp = {_spelled(typed)} are shares from 0 to 1: the engine "
-                f"takes {' and '.join(f'{each:.4f}' for each in ends)}",
+                f"takes {' and '.join(f'{impedance:.4f}' for impedance in ends)}",
             ),
             (
                 is_wide,
@@ -476,14 +479,14 @@ def _dangers(contact: Contact, found: Found) -> list[str]:
                 f"unstable: the body leaves up to {high:.3g} times as fast as it came",
             ),
             (
-                found.outcome.depth[1] > bounce.size,
+                behaviour.outcome.depth[1] > bounce.size,
                 f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}",
             ),
         ]
     )
 
 
-def _friction(contact: Contact, found: Found) -> list[str]:
+def _friction(contact: Contact, behaviour: Behaviour) -> list[str]:
     """Return by how much friction changes r in MuJoCo."""
     law = contact.law
     if not isinstance(law, Impedance):
@@ -494,7 +497,7 @@ def _friction(contact: Contact, found: Found) -> list[str]:
         for edges in (0.0, 1.0)
     )
     solimp = _spelled(contact.problem.engine.beside.get("solimp", ""))
-    changes = max(abs(smooth - cone), abs(smooth - found.outcome.restitution.mean))
+    changes = max(abs(smooth - cone), abs(smooth - behaviour.outcome.restitution.mean))
     said = (
         f"friction changes r: r is {smooth:.3f} with the pyramidal cone and no friction, and "
         f"{cone:.3f} with the elliptic cone at every friction; with the solimp of designs, "
@@ -503,10 +506,10 @@ def _friction(contact: Contact, found: Found) -> list[str]:
     return holding([(changes > _VISIBLE, said)])
 
 
-def _facts(contact: Contact, found: Found) -> list[str]:
+def _facts(contact: Contact, behaviour: Behaviour) -> list[str]:
     """Return further warnings."""
     row = contact.problem.engine
-    rests, hops = contact.problem.at_rest(contact.law, contact.step, found.outcome)
+    rests, hops = contact.problem.at_rest(contact.law, contact.step, behaviour.outcome)
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
     raised = max(time, 2 * contact.step)
     return holding(
@@ -521,8 +524,8 @@ def _facts(contact: Contact, found: Found) -> list[str]:
                 f"{row.name} raises the time constant of {time:g} s to {raised:g} s, two steps",
             ),
             (
-                found.damping_ratio >= 1,
-                f"the damping ratio of {found.damping_ratio:.3g} is that of a contact without "
+                behaviour.damping_ratio >= 1,
+                f"the damping ratio of {behaviour.damping_ratio:.3g} is that of a contact without "
                 "oscillation",
             ),
             (hops, rests),
@@ -530,7 +533,7 @@ def _facts(contact: Contact, found: Found) -> list[str]:
     )
 
 
-def _guesses(contact: Contact, found: Found) -> list[str]:
+def _guesses(contact: Contact, behaviour: Behaviour) -> list[str]:
     """Return what the numbers may have been meant to be: r would then be the wanted one."""
     row = contact.problem.engine
     bounce = contact.problem.bounce
@@ -543,17 +546,17 @@ def _guesses(contact: Contact, found: Found) -> list[str]:
         if units_of.get(name) in ("1/s", "1/s^2")
     }
     r = replace(contact, one={**contact.one, **divided}).outcome().restitution.mean
-    ratio = min(found.damping_ratio, 1 - 1e-9)
+    ratio = min(behaviour.damping_ratio, 1 - 1e-9)
     pulled = math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2))
     guesses = [
         (
-            abs(r - wanted) < TOLERANCE <= abs(found.outcome.restitution.mean - wanted),
+            abs(r - wanted) < TOLERANCE <= abs(behaviour.outcome.restitution.mean - wanted),
             f"{' and '.join(divided)} is per unit of mass in {row.name}: divided by "
             f"{bounce.mass:g} kg, r is {r:.3f}",
         ),
         (
             # A formula is followed to two digits.
-            abs(found.free - wanted) >= TOLERANCE and abs(pulled - wanted) < 0.005,
+            abs(behaviour.free - wanted) >= TOLERANCE and abs(pulled - wanted) < 0.005,
             "this damping is that of a contact whose damper pulls until the end, "
             f"r = exp(-πζ/√(1 - ζ²)); in {row.name} it ends earlier",
         ),
@@ -574,22 +577,22 @@ def _nearest(contact: Contact) -> Answer:
 
     def is_beyond(place: int) -> bool:
         tried = contact.damped(low * _FINE**place)
-        found = contact.problem.drops(tried.law, contact.step, _MEAN)
-        is_above = not tried.diverges and bool(found.mean > target)
+        drops = contact.problem.drops(tried.law, contact.step, _MEAN)
+        is_above = not tried.diverges and bool(drops.mean > target)
         return is_above == raises
 
     count = math.floor(math.log(high / low, _FINE))
     place = bisect_left(range(count), True, key=is_beyond)
     # The least damping is as good as none, but no ratio is 0.
     is_some = place > 0 or contact.is_ratio
-    found = contact.damped(float(f"{low * _FINE**place:.4g}") if is_some else 0.0)
+    nearest = contact.damped(float(f"{low * _FINE**place:.4g}") if is_some else 0.0)
     # A spring in N/m is replaced by both parameters, because nothing is given beside it.
     changed = {
-        name: found.one[name]
+        name: nearest.one[name]
         for name in contact.problem.engine.names
         if name == contact.damper or contact.problem.engine.spring
     }
-    outcome = found.outcome()
+    outcome = nearest.outcome()
     return Answer(
         engine=contact.problem.engine.name,
         ran=ran_in(contact.problem.engine),

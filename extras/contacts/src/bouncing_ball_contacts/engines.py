@@ -351,29 +351,29 @@ def parameters_of(
     Refused
         If a name is unknown, or given twice.
     """
-    found: dict[str, Any] = {}
-    for each, value in typed.items():
-        name = known.get(as_compared(str(each)))
+    parameters: dict[str, Any] = {}
+    for typed_name, value in typed.items():
+        name = known.get(as_compared(str(typed_name)))
         if name is None:
             near = [
                 f"; did you mean {one}?"
-                for one in difflib.get_close_matches(each, [*names, *springs], 1, 0.7)
-                if one != each
+                for one in difflib.get_close_matches(typed_name, [*names, *springs], 1, 0.7)
+                if one != typed_name
             ]
             said = ["; the time step is --time-step, or time_step= in Python"]
-            same = _SAME.get(as_compared(str(each)), "")
+            same = _SAME.get(as_compared(str(typed_name)), "")
             meant = [f"; did you mean {same}?"] * (same in known)
-            hint = "".join(said * (as_compared(str(each)) in _TIME_STEPS) or meant or near)
+            hint = "".join(said * (as_compared(str(typed_name)) in _TIME_STEPS) or meant or near)
             known_here = ", ".join(names)
             if springs:
                 known_here += f"; without a restitution {', '.join(springs)}"
             raise Refused(
-                f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
+                f"{engine}: {typed_name!r} is not computed here; computed are {known_here}{hint}"
             )
-        if name in found:
-            raise Refused(f"{each!r} gives {name} twice")
-        found[name] = value
-    return found
+        if name in parameters:
+            raise Refused(f"{typed_name!r} gives {name} twice")
+        parameters[name] = value
+    return parameters
 
 
 def ran_in(row: Engine | ByNumber) -> str:

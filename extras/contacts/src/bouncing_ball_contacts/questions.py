@@ -22,23 +22,26 @@ def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
     Refused
         If there is none; the message has the nearest name.
     """
-    rows = {re.sub(r"\W", "", each): each for each in (*ENGINES, *BY_NUMBER)}
+    rows = {re.sub(r"\W", "", row_name): row_name for row_name in (*ENGINES, *BY_NUMBER)}
     known = rows | NAMES
     plain = re.sub(r"[\W_]", "", str(name).lower())
     # A version at the end, and words such as "engine", belong to no name.
     bare = re.sub(r"(physics|engine|system|js)*(v?\d+d?)?$", "", plain)
-    key = next((each for each in (plain, bare) if each in known), "")
-    found = known.get(key, "")
+    key = next((form for form in (plain, bare) if form in known), "")
+    row_name = known.get(key, "")
     near = difflib.get_close_matches(plain, known, 1, 0.85)
     meant = f"did you mean {known[near[0]] or near[0]}? " if near else ""
     refuse(
         [
             (not key, f"engine {name!r} is not known; {meant}'bounce engines' lists the engines"),
-            (found not in rows.values(), f"{name} was not run{f', but {found}' * bool(found)}"),
+            (
+                row_name not in rows.values(),
+                f"{name} was not run{f', but {row_name}' * bool(row_name)}",
+            ),
         ]
     )
-    row = BY_NUMBER.get(found)
-    return ENGINES.get(row.springs if row else found), row
+    row = BY_NUMBER.get(row_name)
+    return ENGINES.get(row.springs if row else row_name), row
 
 
 def design(
@@ -71,8 +74,8 @@ def design(
     Refused
         If there is no such contact, or a quantity is missing.
 
-    >>> found = design(Bounce(mass=1, radius=0.1, restitution=0.8), "mujoco", "1 ms")
-    >>> sorted(found.parameters), round(found.outcome.restitution.mean, 2)
+    >>> answer = design(Bounce(mass=1, radius=0.1, restitution=0.8), "mujoco", "1 ms")
+    >>> sorted(answer.parameters), round(answer.outcome.restitution.mean, 2)
     (['solimp', 'solref'], 0.8)
     """
     if not isinstance(bounce, Bounce):
@@ -88,9 +91,9 @@ def design(
     is_spring = bounce.gives_contact or bounce.restitution == 0
     if number is None or (springs is not None and is_spring):
         return design_spring(bounce, springs or ENGINES["generic"], time_step)
-    found = design_number(bounce, number, time_step, pixels)
-    if found.snippet or found.also or springs is None or bounce.mass is None:
-        return found
+    answer = design_number(bounce, number, time_step, pixels)
+    if answer.snippet or answer.also or springs is None or bounce.mass is None:
+        return answer
     return design_spring(bounce, springs, time_step)
 
 
@@ -126,8 +129,8 @@ def diagnose(
     Refused
         If a parameter or the step is missing, unknown or out of its range.
 
-    >>> found = diagnose(Bounce(drop_height=1), "rapier", {"restitution": 0.8}, "1/60", other={})
-    >>> found.numbers["number"], round(found.outcome.restitution.mean, 2)
+    >>> answer = diagnose(Bounce(drop_height=1), "rapier", {"restitution": 0.8}, "1/60", other={})
+    >>> answer.numbers["number"], round(answer.outcome.restitution.mean, 2)
     (0.4, 0.39)
     """
     # Importing it takes longer than a design, which does not need it.
@@ -150,7 +153,7 @@ def diagnose(
     of_number = number.names if number else {}
     of_springs = set(map(as_compared, springs.rules)) - of_number.keys() if springs else set()
     of_springs |= set(map(as_compared, [*springs.names, *springs.spring])) if springs else set()
-    is_number = "number" in {of_number.get(each) for each in compared}
+    is_number = "number" in {of_number.get(name) for name in compared}
     if number is None or (springs and not is_number and compared & of_springs):
         return diagnose_spring(bounce, springs or ENGINES["generic"], typed, time_step, other)
     return diagnose_number(bounce, number, typed, time_step, other)

@@ -72,8 +72,8 @@ def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, 
         speeds = left * v - pull * (n if at.keeps == 1 else (1 - left) / (1 - at.keeps))
     else:
         free = engine.free
-        each = itertools.accumulate(n[1:], lambda u, _: free(at, u), initial=v)
-        speeds = np.concatenate(list(each), axis=-1)
+        velocities = itertools.accumulate(n[1:], lambda u, _: free(at, u), initial=v)
+        speeds = np.concatenate(list(velocities), axis=-1)
     moves = speeds + (1 - engine.sinks) * at.added
     return at.step * (np.cumsum(moves, axis=-1) - moves[..., :1]), speeds
 
@@ -136,8 +136,8 @@ def drops(engine: ByNumber, at: Fall, heights: Array, starts: Array) -> Array:
     near = _reach(engine, at) + 4 * speed * at.step
     ways, speeds = _flight(engine, at, v[:, None], 2 * speed / at.added)
     n = np.argmax(ways < near - z[:, None], axis=1) - 1 - engine.remembers
-    each = np.arange(len(n)), np.maximum(n, 0)
-    z, v = _rebounds(engine, at, z + ways[each], speeds[each], speed)
+    last_step = np.arange(len(n)), np.maximum(n, 0)
+    z, v = _rebounds(engine, at, z + ways[last_step], speeds[last_step], speed)
     # And so it flies up to its top.
     ways, _ = _flight(engine, at, v[:, None], v.max() / at.added)
     return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
@@ -270,8 +270,8 @@ class Case(NamedTuple):
             mass=bounce.mass or 1.0,
             settings=settings,
         )
-        falls = [replace(at, settings={**settings, **each}) for each in row.either]
-        return np.concatenate([restitutions(row, each, speed, instants) for each in falls])
+        falls = [replace(at, settings={**settings, **variant}) for variant in row.either]
+        return np.concatenate([restitutions(row, fall, speed, instants) for fall in falls])
 
     def slower(self, written: float) -> Range:
         """Return r at a third of the speed; NaN if the step is too long for it."""
@@ -363,8 +363,8 @@ class Tried(NamedTuple):
         }
         if case.threshold != row.threshold:
             settings[row.set_by] = case.threshold / row.unit
-        each = [f" and {name} = {value:.2g}" for name, value in settings.items()]
-        named = "".join(each) if len(each) < 3 else f" with {len(each)} settings"
+        phrases = [f" and {name} = {value:.2g}" for name, value in settings.items()]
+        named = "".join(phrases) if len(phrases) < 3 else f" with {len(phrases)} settings"
         step = show(case.step, "s")
         return Answer(
             engine=row.name,
@@ -494,7 +494,7 @@ def _remarks(case: Case, written: float, r: Range) -> list[str]:
     bodies = "alike" if case.other is None else f"and {case.other:g} of the other body"
     # Share of the drop that is within the skin.
     skin = 2 * bounce.gravity * row.skin / bounce.impact_speed**2
-    of_skin = Range(*(math.sqrt(max(each**2 - skin, 0.0) / (1 - skin)) for each in r))
+    of_skin = Range(*(math.sqrt(max(restitution**2 - skin, 0.0) / (1 - skin)) for restitution in r))
     return holding(
         [
             (
@@ -588,36 +588,36 @@ def design_number(
     if is_free and also:
         # No step was asked for.
         return also[0]
-    found = best.answer()
+    answer = best.answer()
     way = show(bounce.impact_speed * asked, "m")
     far = f"at {show(asked, 's', 4)} it moves {way} in a step, farther than its radius"
-    warnings = (*found.warnings, *holding([(step != asked, far)]))
-    found = replace(found, asked_step=asked, warnings=warnings, also=also)
+    warnings = (*answer.warnings, *holding([(step != asked, far)]))
+    answer = replace(answer, asked_step=asked, warnings=warnings, also=also)
     if best.does_it:
-        return found
+        return answer
     nothing = f"at {show(step, 's')} no number gives this r"
     rises = (bounce.restitution * bounce.impact_speed) ** 2 < 2 * bounce.gravity * engine.skin
     nothing += f", because a ball rises to the skin of {show(engine.skin, 'm')}" * rises
     nothing += "" if also else ": nothing is written to paste"
-    return replace(found, snippet="", parameters={}, warnings=(nothing, *warnings))
+    return replace(answer, snippet="", parameters={}, warnings=(nothing, *warnings))
 
 
-def _other_step(found: Tried) -> tuple[Answer, ...]:
+def _other_step(tried: Tried) -> tuple[Answer, ...]:
     """Return the answer at another step that keeps r, if this one does not.
 
     It is a half, a quarter, … of the step, or else 2, 4, … times a step below 1 ms. The search ends
     if the mean of r is right, and two steps in succession leave its range as it is.
     """
-    if found.deviation <= TOLERANCE:
+    if tried.deviation <= TOLERANCE:
         return ()
-    asked = found.case.step
+    asked = tried.case.step
     shorter = [asked / 2**n for n in range(1, 8) if asked / 2**n >= SHORTEST_STEP]
     longer = [asked * 2**n for n in range(1, 5) if asked * 2**n <= 1e-3]
-    deviations = [found.deviation] if found.has_mean else []
+    deviations = [tried.deviation] if tried.has_mean else []
     for step in (*shorter, *longer):
-        case = found.case._replace(step=step)
+        case = tried.case._replace(step=step)
         # The range of r hardly depends on the number: no search where it is too wide.
-        half = np.ptp(case.restitutions(found.number, case.bounce.impact_speed)) / 2
+        half = np.ptp(case.restitutions(tried.number, case.bounce.impact_speed)) / 2
         if half > 1.5 * TOLERANCE:
             deviations.append(half)
         else:
@@ -684,12 +684,12 @@ def diagnose_number(
             f"{engine.name}: a negative {engine.parameter} needs a positive one of the other body "
             f"(--other): {engine.pair.text}"
         )
-    found = case.tried(number).answer()
-    causes = tuple(_causes(case, number, found.outcome.restitution.mean))
+    answer = case.tried(number).answer()
+    causes = tuple(_causes(case, number, answer.outcome.restitution.mean))
     # Nothing is to be pasted of what is given.
-    found = replace(found, snippet="", not_for=(), warnings=causes + found.warnings)
-    if found.is_kept:
-        return found
+    answer = replace(answer, snippet="", not_for=(), warnings=causes + answer.warnings)
+    if answer.is_kept:
+        return answer
     best = case.wanted()
     if other is not None and best.deviation > TOLERANCE:
         # The number of one body may not be enough.
@@ -701,8 +701,8 @@ def diagnose_number(
     if change and best.case.other is None and other is not None:
         change = replace(change, gives=f"{change.gives} (of both bodies)")
     beyond = (f"no number keeps r within {TOLERANCE:g} at this step",)
-    warnings = found.warnings + beyond * (best.deviation > TOLERANCE)
-    return replace(found, change=change, warnings=warnings, also=_other_step(best))
+    warnings = answer.warnings + beyond * (best.deviation > TOLERANCE)
+    return replace(answer, change=change, warnings=warnings, also=_other_step(best))
 
 
 def _later(engine: ByNumber, bodies: Sequence[Mapping[str, Any]]) -> Rule:
@@ -746,7 +746,7 @@ def _given(engine: ByNumber, typed: Mapping[str, Any], is_other: bool = False) -
         if not is_other or what in ("number", "combine")
     }
     row = ENGINES.get(engine.springs)
-    found = parameters_of(
+    parameters = parameters_of(
         engine.name + is_other * ", the other body",
         known,
         [
@@ -766,5 +766,5 @@ def _given(engine: ByNumber, typed: Mapping[str, Any], is_other: bool = False) -
         what: read.get(what, lambda name, value: within(name, value, 0, math.inf))(
             engine.parameter if what == "number" else what, value
         )
-        for what, value in found.items()
+        for what, value in parameters.items()
     }

@@ -74,12 +74,12 @@ class PhysX(Engine):
     """
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
-        found = super().combined(one, other)
-        of_mode = MODES[found["restitutionCombineMode"]].of
+        combined = super().combined(one, other)
+        of_mode = MODES[combined["restitutionCombineMode"]].of
         stiffness, damping = self.names
         if min(one[stiffness], other[stiffness]) > 0:
-            return found | {stiffness: abs(of_mode(-one[stiffness], -other[stiffness]))}
-        return found | {name: max(one[name], other[name]) for name in (stiffness, damping)}
+            return combined | {stiffness: abs(of_mode(-one[stiffness], -other[stiffness]))}
+        return combined | {name: max(one[name], other[name]) for name in (stiffness, damping)}
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class NewtonMujoco(Engine):
     """Newton's MuJoCo solver averages time constants and damping ratios, instead of ke and kd."""
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
-        a, b = (np.array(_solref(each["ke"], each["kd"])) for each in (one, other))
+        a, b = (np.array(_solref(body["ke"], body["kd"])) for body in (one, other))
         time, ratio = (a + b) / 2
         return super().combined(one, other) | {"ke": 1 / (time * ratio) ** 2, "kd": 2 / time}
 
@@ -753,8 +753,8 @@ _OF_GAZEBO = "<{name}>{value}</{name}>  <!-- in <surface><contact><ode> -->"
 _OF_GAZEBO_BODIES = "<{name}>{value}</{name}>  <!-- in <surface><bounce> of {bodies} -->"
 _OF_GAZEBO_STEP = "<max_step_size>{value}</max_step_size>  <!-- in <physics> -->"
 BY_NUMBER = {
-    each.name: each
-    for each in (
+    row.name: row
+    for row in (
         _JOLT,
         replace(
             _JOLT,

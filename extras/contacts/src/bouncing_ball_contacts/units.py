@@ -147,8 +147,8 @@ def _typed(name: str, text: str, unit: str, wanted: str) -> float:
     plain = text.strip().replace("−", "-")
     both = (plain.replace(",", ""), plain.replace(",", "."))
     is_double = re.search(r"(?<![\d.,])\d{1,3},\d{3}(?![\d,])", plain)
-    found = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", both[1])
-    first, second, typed = found.groups() if found else ("0", None, "")
+    match = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", both[1])
+    first, second, typed = match.groups() if match else ("0", None, "")
     typed = SPELLED.get(typed.lower(), typed)
     divisor = float(second or 1)
     known = {"": 1.0, **_UNITS.get(unit, {unit: 1.0})}
@@ -159,7 +159,7 @@ def _typed(name: str, text: str, unit: str, wanted: str) -> float:
                 is_double,
                 f"{name}: {text!r} can be read as {both[0]!r} or as {both[1]!r}; write one",
             ),
-            (not found, f"{name}: {text!r} does not begin with a number; {wanted}"),
+            (not match, f"{name}: {text!r} does not begin with a number; {wanted}"),
             (divisor == 0, f"{name}: {text!r} divides by zero"),
             (
                 typed not in known,

@@ -156,7 +156,7 @@ def _rounding_given(table: Table, unit: str) -> float:
 def _series(table: Table) -> list[Table]:
     """Return the lines of each recording of each group."""
     groups = table.parts("group").values()
-    return [part for each in groups for part in each.parts("recording").values()]
+    return [part for group in groups for part in group.parts("recording").values()]
 
 
 def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
@@ -166,7 +166,7 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     """
     runs: list[tuple[Array, Lines]] = []
     if len(columns) > 1:
-        matrix = np.column_stack([table.values(each) for each in columns])
+        matrix = np.column_stack([table.values(column) for column in columns])
         # A stopwatch writes 0 for stops that did not happen.
         is_over = np.flip(np.cumsum(np.flip(matrix, axis=1) > 0, axis=1), axis=1) == 0
         matrix[is_over] = math.nan
@@ -174,8 +174,8 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     else:
         for part in _series(table):
             begins = [0]
-            for each in part.of("count"):
-                begins += (np.flatnonzero(np.diff(each.numbers) > 1) + 1).tolist()
+            for column in part.of("count"):
+                begins += (np.flatnonzero(np.diff(column.numbers) > 1) + 1).tolist()
             values = part.values(*part.of(columns[0].role))
             for begin, end in itertools.pairwise([*begins, len(values)]):
                 runs.append((values[begin:end], part.lines[begin:end]))
@@ -200,7 +200,7 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines, another: str) 
     # Flights get shorter, even if r is 0.997.
     if half >= 10 and flights[half:].mean() > 0.97 * flights[:half].mean():
         of_series = {"time", *TEXTS} - {"remark"}
-        others = [each.name for each in table.columns if each.role not in of_series]
+        others = [column.name for column in table.columns if column.role not in of_series]
         raise Refused(
             f"{table.name}: evenly spaced times are those of samples ({', '.join(others)}): "
             "positions, y (m), are read, and sounds as WAV, but neither accelerations nor forces; "
@@ -280,17 +280,17 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         kind = kind.replace("times", "flights")
     if kind == "times":
         runs = [(np.diff(times), lines[1:]) for times, lines in runs]
-    found = Recording(
+    recording = Recording(
         table.name,
         "heights" if kind == "heights" else "flights",
         tuple(values for values, _ in runs if len(values)),
         are_times=kind == "times",
         # The errors of intervals that were rounded one by one do not cancel, as those of times.
-        digit=0.0 if kind == "flights" else min(each.scale * each.digit for each in columns),
+        digit=0.0 if kind == "flights" else min(column.scale * column.digit for column in columns),
         head=table.head,
         groups=_groups(table, [i for _, lines in runs for i in lines[1:].tolist()], None),
     )
-    rounding = rounding_of(found) if found.chains else 0.0
+    rounding = rounding_of(recording) if recording.chains else 0.0
     unit = "m" if kind == "heights" else "s"
     rounding = max(rounding, _rounding_given(table, unit))
     # Errors of two readings may let a height grow by a last digit, and those of three times a
@@ -327,15 +327,15 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         )
         if kind != "heights":
             _refuse_ratios(table, values, lines, rounding)
-    return found
+    return recording
 
 
 def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Column]) -> Recording:
     """Return the recording of pairs of the first column and each other column."""
-    first, *others = (table.values(each) for each in columns)
+    first, *others = (table.values(column) for column in columns)
     # Without a unit an uncertainty has that of the coefficients.
-    known = [replace(each, unit=each.unit or columns[-1].unit) for each in errors]
-    rows = [np.column_stack([first, each, *map(table.values, known)]) for each in others]
+    known = [replace(error, unit=error.unit or columns[-1].unit) for error in errors]
+    rows = [np.column_stack([first, other, *map(table.values, known)]) for other in others]
     numbers = np.concatenate(rows)
     is_there = ~np.isnan(numbers).any(axis=1)
     pairs = numbers[is_there, :2]
@@ -345,7 +345,7 @@ def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Colum
         grows = _rounding_given(table, unit)
         _refuse_growth(table, kind, pairs, lines, grows)
     read_off = columns if kind == "speeds" else columns[1:]
-    digit = min(each.scale * each.digit for each in read_off)
+    digit = min(column.scale * column.digit for column in read_off)
     uncertainty = numbers[is_there, 2] if errors else None
     # A height of a drop and a speed of a coefficient are set once for all trials.
     shared = {"drops": _heights_that_are_one(pairs[:, 0]), "coefficients": pairs[:, 0]}
@@ -395,10 +395,10 @@ class _Film(NamedTuple):
         used = np.flatnonzero(~(self.is_copy | self.is_out))
         if len(used) <= 2 * FEWEST:
             return {}, {}
-        found, unused = impacts_of_track(self.t[used], way * self.y[used])
+        tracks, unused = impacts_of_track(self.t[used], way * self.y[used])
         lines = self.lines[used].tolist()
-        return {lines[i]: each for i, each in found.items()}, {
-            lines[i]: each for i, each in unused.items()
+        return {lines[i]: track for i, track in tracks.items()}, {
+            lines[i]: reason for i, reason in unused.items()
         }
 
     def upright(self, tracks: Iterable[Array]) -> "_Film":
@@ -407,7 +407,7 @@ class _Film(NamedTuple):
         A turned picture adds a part of the ball's drift to the positions upwards.
         """
         pull = np.zeros(2)
-        for t, _, after in (each.T for each in tracks):
+        for t, _, after in (track.T for track in tracks):
             at = np.searchsorted(self.t, t)
             lines = np.column_stack([after, 1 - after, after * t, (1 - after) * t])
             bend = t**2 - lines @ np.linalg.lstsq(lines, t**2, rcond=None)[0]
@@ -438,9 +438,9 @@ def _sideways(table: Table, positions: Column) -> Array:
     columns = table.of("sideways")
     if len(columns) != 1 or (columns[0].unit in units_of("m")) != (positions.unit in units_of("m")):
         return np.full(len(table.lines), math.nan)
-    units = [f"1 {each.unit}" for each in (columns[0], positions)]
+    units = [f"1 {column.unit}" for column in (columns[0], positions)]
     is_length = positions.unit in units_of("m")
-    x, y = (in_si("unit", each, "m") if is_length else 1.0 for each in units)
+    x, y = (in_si("unit", unit, "m") if is_length else 1.0 for unit in units)
     return columns[0].numbers * x / y
 
 
@@ -460,10 +460,10 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
                 "before another film",
                 lines=part.lines[frames[1:]],
             )
-            found = frames[~np.isnan(both[frames, 1])]
-            if len(found) > 2 * FEWEST:
-                t, y, x = both[found].T
-                films.append(_film(columns, t - t[0], y, x, part.lines[found]))
+            with_position = frames[~np.isnan(both[frames, 1])]
+            if len(with_position) > 2 * FEWEST:
+                t, y, x = both[with_position].T
+                films.append(_film(columns, t - t[0], y, x, part.lines[with_position]))
     if not films:
         raise Refused(f"{table.name}: too few lines of a track; tops are one column, height")
     return films
@@ -479,15 +479,15 @@ def _left_out(
         "frames that are missing before": [],
     }
     said = []
-    for film, found, others in zip(films, impacts, unused, strict=True):
+    for film, tracks_by_line, others in zip(films, impacts, unused, strict=True):
         said += [
             f"the impact in line {line} is not used: {others[line]}"
             for line in others
             if others[line] in TOLD
         ]
-        if not found:
+        if not tracks_by_line:
             continue
-        tracks = list(found.values())
+        tracks = list(tracks_by_line.values())
         begin, end = tracks[0][0, 0], tracks[-1][-1, 0]
         during = (film.t >= begin) & (film.t <= end)
         steps = np.diff(film.t, prepend=film.t[0])
@@ -541,24 +541,26 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     films = _films(table, columns)
     # Upside down no flight is a parabola.
     ways = [[film.impacts(way) for film in films] for way in (1, -1)]
-    films_of = max(ways, key=lambda each: [sum(map(len, part)) for part in zip(*each, strict=True)])
+    films_of = max(
+        ways, key=lambda impacts: [sum(map(len, part)) for part in zip(*impacts, strict=True)]
+    )
     way = 1 if films_of is ways[0] else -1
     has_sideways = all(np.isfinite(film.x).all() for film in films)
-    if has_sideways and any(found for found, _ in films_of):
+    if has_sideways and any(tracks_by_line for tracks_by_line, _ in films_of):
         films = [
-            film.upright(found.values()) if found else film
-            for film, (found, _) in zip(films, films_of, strict=True)
+            film.upright(tracks_by_line.values()) if tracks_by_line else film
+            for film, (tracks_by_line, _) in zip(films, films_of, strict=True)
         ]
         films_of = [film.impacts(way) for film in films]
-    of_films = [found for found, _ in films_of]
+    of_films = [tracks_by_line for tracks_by_line, _ in films_of]
     unused = [others for _, others in films_of]
-    numbers = [line for each in of_films for line in each]
-    tracks = [track for each in of_films for track in each.values()]
+    numbers = [line for tracks_by_line in of_films for line in tracks_by_line]
+    tracks = [track for tracks_by_line in of_films for track in tracks_by_line.values()]
     if not tracks:
-        reasons = {line: said for each in unused for line, said in each.items()}
+        reasons = {line: said for others in unused for line, said in others.items()}
         lowest = "".join(f"; line {line}: {said}" for line, said in list(reasons.items())[:1])
         raise Refused(f"{table.name}: no impact between two flights in the track{lowest}")
-    before, _, gravity, *_ = np.transpose([impact_of(each) for each in tracks])
+    before, _, gravity, *_ = np.transpose([impact_of(track) for track in tracks])
     metres, no_speed, by_clock = _clock(
         columns, np.mean(gravity), np.max(before / gravity), "frame rate" in table.head
     )
@@ -571,12 +573,12 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
             "the positions grow downwards, as in a picture: they were turned",
         ),
     ]
-    film_of = np.repeat(np.arange(len(films)), [len(each) for each in of_films])
+    film_of = np.repeat(np.arange(len(films)), [len(tracks_by_line) for tracks_by_line in of_films])
     groups = _groups(table, numbers, film_of if len(set(film_of)) > 1 else None)
     return Recording(
         table.name,
         "track",
-        tuple(each * [1, metres or 1, 1] for each in tracks),
+        tuple(track * [1, metres or 1, 1] for track in tracks),
         groups=groups,
         has_clock=not metres,
         has_sideways=has_sideways,
@@ -590,19 +592,19 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
 
 def _layout(table: Table) -> tuple[str, list[Column]]:
     """Return what was measured, and its columns."""
-    roles = {each.role for each in table.columns}
+    roles = {column.role for column in table.columns}
     # An r beside times was computed of these.
     computed = {"restitution"} if {"time", "interval"} & roles else set()
     # So is the drop height beside the touches of each fall.
     computed |= {"drop height"} if "touch" in roles else set()
     is_half = bool(roles & set(_HALVES) - computed)
-    layouts = [each for each in LAYOUTS if not is_half or each[0] in _PAIRS]
-    kind, needed = next((each for each in layouts if roles >= set(each[1])), ("", ()))
+    layouts = [layout for layout in LAYOUTS if not is_half or layout[0] in _PAIRS]
+    kind, needed = next((layout for layout in layouts if roles >= set(layout[1])), ("", ()))
     if not kind:
         there = ", ".join(
-            f"{each.name!r} is {_IGNORED.get(each.role, each.role)}"
-            for each in table.columns
-            if each.name
+            f"{column.name!r} is {_IGNORED.get(column.role, column.role)}"
+            for column in table.columns
+            if column.name
         )
         film = (
             "frames are times with a line above the headings, # frame rate: 30; "
@@ -613,15 +615,15 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
             f"{table.name}: no bounces, as {there}: {film}{HEADINGS}; a title or a comment begins "
             "with #"
         )
-    columns = [each for role in needed for each in table.of(role)]
-    for each, other in itertools.pairwise(columns):
+    columns = [column for role in needed for column in table.of(role)]
+    for column, other in itertools.pairwise(columns):
         counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
-        is_counted = each.role == counted and (
-            counted == "touch" or re.search(r"\d$", each.name + other.name)
+        is_counted = column.role == counted and (
+            counted == "touch" or re.search(r"\d$", column.name + other.name)
         )
-        if each.role == other.role and not is_counted:
+        if column.role == other.role and not is_counted:
             raise Refused(
-                f"{table.name}: two columns are both {each.role}, {each.name!r} and "
+                f"{table.name}: two columns are both {column.role}, {column.name!r} and "
                 f"{other.name!r}: write trial 1,trial 2 over repeated drops, h0,h1,h2 over "
                 "successive tops, the same heading over runs side by side of one ball, and 'height "
                 f"(cm) (golf)' over those of several balls, {COLUMNS}"
@@ -643,7 +645,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     """Return the recording of one ball."""
     kind, columns = _layout(table)
     errors = table.of("uncertainty")[:1] if kind == "coefficients" else []
-    is_there = np.all([~np.isnan(each.numbers) for each in columns + errors], axis=0)
+    is_there = np.all([~np.isnan(column.numbers) for column in columns + errors], axis=0)
     if kind in _PAIRS:
         recording = _of_pairs(table, kind, columns, errors)
     elif kind == "track":
@@ -651,21 +653,23 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     else:
         recording = _of_series(table, kind, columns)
     if not sum(map(len, recording.chains)):
-        named = ", ".join(each.name for each in columns)
+        named = ", ".join(column.name for column in columns)
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
     used = [*columns, *errors, *(table.of("sideways") if recording.has_sideways else [])]
     lasts = table.head.get("contact time")
     ignored = [
-        each for each in table.columns if each.name and each not in used and each.role not in TEXTS
+        column
+        for column in table.columns
+        if column.name and column not in used and column.role not in TEXTS
     ]
-    for each in ignored:
-        if _is_reading(each, kind):
+    for column in ignored:
+        if _is_reading(column, kind):
             raise Refused(
-                f"{table.name}: column {each.name!r} looks like a measurement, but "
+                f"{table.name}: column {column.name!r} looks like a measurement, but "
                 f"{' and '.join(dict.fromkeys(one.role for one in columns))} are read: "
                 f"delete it, or name it 'remark', {COLUMNS}"
             )
-    unused = ", ".join(repr(each.name) for each in ignored)
+    unused = ", ".join(repr(column.name) for column in ignored)
     gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     notes = [
@@ -727,12 +731,12 @@ def read(
     table = table_of(source, leave_out, columns)
     if resolution is not None:
         table = replace(table, head={**table.head, "resolution": str(resolution)})
-    for each in table.columns:
+    for column in table.columns:
         # A reading with its unit, such as 36 cm, begins with a digit, and is no name.
-        texts = {cell for cell in each.cells if re.match(r"\D", cell)}
-        if not each.role and np.isnan(each.numbers).all() and len(texts) > 1:
+        texts = {cell for cell in column.cells if re.match(r"\D", cell)}
+        if not column.role and np.isnan(column.numbers).all() and len(texts) > 1:
             raise Refused(
-                f"{table.name}: column {each.name!r} has {', '.join(sorted(texts)[:5])}: name it "
+                f"{table.name}: column {column.name!r} has {', '.join(sorted(texts)[:5])}: name it "
                 f"'ball' for one result each, or 'group' for one of all, {COLUMNS}"
             )
     balls = table.parts("ball")

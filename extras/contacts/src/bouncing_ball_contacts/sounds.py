@@ -208,8 +208,8 @@ def rises_of(sound: Sound, cutoff: float) -> Rises:
     weight = np.clip(rise / _CLEAR_RISE, 0, 1) * loudness / louder
     cost = (weight * np.minimum(1, 3 * loudness / near)) ** 2
     width = 2 * round(_NEAREST / _BLOCK / 2) - 1
-    found = np.flatnonzero((rise >= _SMALLEST_RISE) & (rise == maximum_filter1d(rise, width)))
-    kept = np.sort(found[np.argsort(-weight[found])[:MOST_SOUNDS]])
+    peaks = np.flatnonzero((rise >= _SMALLEST_RISE) & (rise == maximum_filter1d(rise, width)))
+    kept = np.sort(peaks[np.argsort(-weight[peaks])[:MOST_SOUNDS]])
     onsets = np.array([_onset(high, sound.rate, i * size) for i in kept]).reshape(-1, 2)
     return Rises(
         sound.begin + onsets[:, 0],
@@ -297,7 +297,7 @@ def _other_falls(rises: Rises, series: NDArray[np.intp]) -> list[str]:
     """Return where other falls are heard, before and after a series."""
     notes = []
     for rest in (slice(series[0]), slice(series[-1] + 1, None)):
-        left = Rises(*(each[rest] for each in rises))
+        left = Rises(*(array[rest] for array in rises))
         times = left.times[series_of(left)[0]]
         if len(times):
             begin = max(times[0] - 0.1, 0.0)
@@ -314,8 +314,8 @@ def listen(sound: Sound) -> Heard:
         If no series of impacts is heard, or more than one doubt makes another source likely.
     """
     filtered = [rises_of(sound, cutoff) for cutoff in CUTOFFS]
-    found = [(*series_of(rises), rises) for rises in filtered]
-    series, _, rises = max(found, key=lambda each: each[1])
+    candidates = [(*series_of(rises), rises) for rises in filtered]
+    series, _, rises = max(candidates, key=lambda candidate: candidate[1])
     if not len(series):
         raise Refused(
             f"{sound.name}: no series of {_FEWEST} impacts is heard whose intervals shrink by one "

@@ -162,7 +162,7 @@ _MISSING = ("", "-", "–", "—", "na", "n/a", "#n/a")
 def experiments() -> list[str]:
     """Return the names of the published experiments of the package."""
     folder = files(__package__).joinpath("experiments")
-    return sorted(each.name.removesuffix(".csv") for each in folder.iterdir())
+    return sorted(file.name.removesuffix(".csv") for file in folder.iterdir())
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +200,7 @@ class Column:
     def digit(self) -> float:
         """Last digit of the numbers, in the unit of the column."""
         written = [re.search(r"[.,](\d+)(?:[eE]([-+]?\d+))?", cell) for cell in self.cells]
-        powers = [int(each[2] or 0) - len(each[1]) for each in written if each]
+        powers = [int(match[2] or 0) - len(match[1]) for match in written if match]
         return 10.0 ** min(powers, default=0)
 
 
@@ -215,11 +215,11 @@ class Table:
 
     def of(self, role: str) -> list[Column]:
         """Return the columns that contain a quantity."""
-        return [each for each in self.columns if each.role == role]
+        return [column for column in self.columns if column.role == role]
 
     def names(self, role: str) -> list[str]:
         """Return the name in a column for each line; an empty cell has the name above it."""
-        cells = [each.cells for each in self.of(role)] or [[""] * len(self.lines)]
+        cells = [column.cells for column in self.of(role)] or [[""] * len(self.lines)]
         names = [""]
         for cell in cells[0]:
             names.append(cell or names[-1])
@@ -233,8 +233,8 @@ class Table:
         parts = {}
         for part, rows in rows_of.items():
             columns = [
-                replace(each, cells=[each.cells[i] for i in rows], numbers=each.numbers[rows])
-                for each in self.columns
+                replace(column, cells=[column.cells[i] for i in rows], numbers=column.numbers[rows])
+                for column in self.columns
             ]
             parts[part] = replace(self, columns=columns, lines=self.lines[rows])
         return parts
@@ -245,7 +245,7 @@ class Table:
         """Refuse the first bad line; the text is formatted with its numbers."""
         for i in np.flatnonzero(is_bad)[:1]:
             line = (self.lines if lines is None else lines)[i]
-            said = text.format(*(f"{each[i]:.6g}" for each in numbers))
+            said = text.format(*(f"{array[i]:.6g}" for array in numbers))
             raise Refused(f"{self.name}, line {line}: {said}")
 
     def values(self, column: Column) -> Array:
@@ -318,9 +318,9 @@ def _unpacked(name: str, data: bytes) -> bytes:
             members = archive.namelist()
             # Programs write folders about the device beside their table.
             tables = [
-                each
-                for each in members
-                if re.fullmatch(r"[^/]+\.(csv|txt|tsv|dat|wav)", each.lower())
+                member
+                for member in members
+                if re.fullmatch(r"[^/]+\.(csv|txt|tsv|dat|wav)", member.lower())
             ]
             data = archive.read(tables[0]) if len(tables) == 1 else b""
     except RuntimeError as reason:
@@ -370,10 +370,10 @@ def typed_readings(words: Sequence[str]) -> dict[str, Any]:
     # Commas divide numbers that have points.
     text = " ".join(words)
     text = re.sub(r",(?=\d*\.)", " ", text)
-    found = [re.fullmatch(r"([-+−]?[\d.,]*\d[\d.,]*)?([^\d.,]*)", word) for word in text.split()]
-    numbers = [each[1] for each in found if each and each[1]]
-    units = {SPELLED.get(each[2].lower(), each[2]) for each in found if each and each[2]}
-    unit = units.pop() if len(units) == 1 and None not in found else ""
+    matches = [re.fullmatch(r"([-+−]?[\d.,]*\d[\d.,]*)?([^\d.,]*)", word) for word in text.split()]
+    numbers = [match[1] for match in matches if match and match[1]]
+    units = {SPELLED.get(match[2].lower(), match[2]) for match in matches if match and match[2]}
+    unit = units.pop() if len(units) == 1 and None not in matches else ""
     if unit not in units_of("s") + units_of("m"):
         raise Refused(
             f"recording: {' '.join(words)!r} are no heights or times with one unit: write "
@@ -457,13 +457,15 @@ def _rows_of(
     labels = {i: line for i, line in lines.items() if not line.startswith("\\")}
     ends = [re.match(_LABEL, line) for line in labels.values() if line]
     is_exported = any(re.match(_EXPORTED, line) for line in labels.values())
-    if is_exported and all(each and float(each[1]) <= float(each[2] or each[1]) for each in ends):
+    if is_exported and all(
+        label and float(label[1]) <= float(label[2] or label[1]) for label in ends
+    ):
         # Impacts have no end.
         begins = {i: line.partition("\t")[0] for i, line in labels.items()}
         begin, table = 0, {0: "time (s)", **begins}
     if len(table) < 2 or not table[begin].strip("| "):
         raise Refused(f"{name} has no line of numbers below a heading")
-    sign = next((each for each in "\t;|," if each in table[begin]), "")
+    sign = next((separator for separator in "\t;|," if separator in table[begin]), "")
     below = [_number(cell, True) for cell in list(table.values())[1].split()]
     if not sign and len(below) > 1 and None not in below:
         return head, _divided_by_spaces(name, table), True
@@ -481,13 +483,13 @@ def _line_of_headings(lines: Mapping[int, str], named: Mapping[str, str]) -> int
     """
     known = above = fallback = 0
     for i, line in itertools.islice(lines.items(), _MOST_LINES):
-        cells = [each.strip() for each in re.split(r'[\t;|,"]+', line)]
+        cells = [cell.strip() for cell in re.split(r'[\t;|,"]+', line)]
         words = cells if len(cells) > 1 else [*re.split(r"\s{2,}", line), *line.split()]
         if any(map(_is_reading, words)):
             if known:
                 break
             fallback = fallback or above
-        elif any(_heading(each)[2] or each in named for each in words):
+        elif any(_heading(word)[2] or word in named for word in words):
             known = i
         elif not {*words} <= _KNOWN_UNITS:
             above = i
@@ -496,8 +498,8 @@ def _line_of_headings(lines: Mapping[int, str], named: Mapping[str, str]) -> int
 
 def _is_reading(cell: str) -> bool:
     """Return whether a cell has a number, which may have a unit."""
-    found = re.fullmatch(r"[-+−]?[.,]?\d[-+−\d.,:/'\"± eE]*?([^\W\d]*|%)", cell)
-    return bool(found and (not found[1] or SPELLED.get(found[1].lower(), found[1]) in _KNOWN_UNITS))
+    match = re.fullmatch(r"[-+−]?[.,]?\d[-+−\d.,:/'\"± eE]*?([^\W\d]*|%)", cell)
+    return bool(match and (not match[1] or SPELLED.get(match[1].lower(), match[1]) in _KNOWN_UNITS))
 
 
 def _divided_by_spaces(name: str, table: dict[int, str]) -> dict[int, list[str]]:
@@ -533,14 +535,14 @@ def _series_in(headings: list[str]) -> list[tuple[str, str]]:
 
     A heading that returns begins another run, whatever it is.
     """
-    found = [_name_in(each) for each in headings]
-    plain = [each for _, each in found]
-    again = [each for each in plain if each and headings.count(each) > 1]
-    are_runs = any(_heading(each)[2] not in ("", *TEXTS) for each in again)
-    for i, each in enumerate(plain):
-        if are_runs and each in again:
-            found[i] = str(headings[: i + 1].count(each)), each
-    return found
+    series = [_name_in(heading) for heading in headings]
+    plain = [heading for _, heading in series]
+    again = [heading for heading in plain if heading and headings.count(heading) > 1]
+    are_runs = any(_heading(heading)[2] not in ("", *TEXTS) for heading in again)
+    for i, heading in enumerate(plain):
+        if are_runs and heading in again:
+            series[i] = str(headings[: i + 1].count(heading)), heading
+    return series
 
 
 def _below_each_other(
@@ -552,32 +554,38 @@ def _below_each_other(
     """
     names, plain = zip(*_series_in(headings), strict=True)
     series = {
-        each: [i for i, other in enumerate(names) if other in ("", each)]
-        for each in dict.fromkeys(filter(None, names))
+        series_name: [i for i, other in enumerate(names) if other in ("", series_name)]
+        for series_name in dict.fromkeys(filter(None, names))
     }
-    shared = [_heading(each)[2] for each, named in zip(plain, names, strict=True) if not named]
-    if len(series) < 2 or len([each for each in shared if each not in ("", *TEXTS)]) > 1:
+    shared = [
+        _heading(heading)[2] for heading, named in zip(plain, names, strict=True) if not named
+    ]
+    if len(series) < 2 or len([role for role in shared if role not in ("", *TEXTS)]) > 1:
         return headings, lines, rows
-    kinds = {each: [plain[i] for i in columns] for each, columns in series.items()}
+    kinds = {series_name: [plain[i] for i in columns] for series_name, columns in series.items()}
     # A column that one series has alone is not read.
-    common = [each for each in plain if all(each in kind for kind in kinds.values())]
-    alike = [each for each in dict.fromkeys(common) if each]
-    read, there = ({_heading(each)[2] for each in some} - {"", *TEXTS} for some in (alike, plain))
+    common = [heading for heading in plain if all(heading in kind for kind in kinds.values())]
+    alike = [heading for heading in dict.fromkeys(common) if heading]
+    read, there = (
+        {_heading(heading)[2] for heading in some} - {"", *TEXTS} for some in (alike, plain)
+    )
     # Positions that only one series has are not left out.
     if not read or (read == {"time"} and there != read):
-        both = " and ".join(f"{each} has {', '.join(kind)}" for each, kind in kinds.items())
+        both = " and ".join(
+            f"{series_name} has {', '.join(kind)}" for series_name, kind in kinds.items()
+        )
         raise Refused(f"{name}: {both}: leave the same columns of each, {COLUMNS}")
     numbers: list[int] = []
     stacked: list[list[str]] = []
-    for each, of_series in series.items():
+    for series_name, of_series in series.items():
         columns = [next(i for i in of_series if plain[i] == heading) for heading in alike]
         # A shorter series ends with empty cells.
         is_there = [any(row[i] for i in columns if names[i]) for row in rows]
         length = max(itertools.compress(itertools.count(1), is_there), default=0)
         numbers += lines[:length]
-        stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
-    are_runs = all(re.fullmatch(_RUN, each, re.IGNORECASE) for each in series)
-    is_of_balls = not are_runs or any(re.fullmatch(_OF_BALL, each) for each in headings)
+        stacked += [[series_name, *(row[i] for i in columns)] for row in rows[:length]]
+    are_runs = all(re.fullmatch(_RUN, series_name, re.IGNORECASE) for series_name in series)
+    is_of_balls = not are_runs or any(re.fullmatch(_OF_BALL, heading) for heading in headings)
     return ["ball" if is_of_balls else "recording", *alike], numbers, stacked
 
 
@@ -616,7 +624,7 @@ def table_of(
         rows = {0: [""] * len(rows[begin]), **rows}
     headings = _with_row_of_units(rows)
     read = _read_columns(name, headings, named or {})
-    headings = [read.get(i, each) for i, each in enumerate(headings)]
+    headings = [read.get(i, heading) for i, heading in enumerate(headings)]
     lines = list(rows)
     unknown = set(leave_out) - set(lines)
     refuse(
@@ -666,9 +674,9 @@ def table_of(
 
 def _read_columns(name: str, headings: list[str], named: Mapping[str, str]) -> dict[int, str]:
     """Return the headings that are given, by the places of their columns."""
-    plain = [_heading(each)[0].lower() for each in headings]
-    whole = [each.lower() for each in headings]
-    found = {}
+    plain = [_heading(heading)[0].lower() for heading in headings]
+    whole = [heading.lower() for heading in headings]
+    given = {}
     for key, heading in named.items():
         names = whole if key.lower() in whole else plain
         is_there = key.lower() in names
@@ -682,14 +690,14 @@ def _read_columns(name: str, headings: list[str], named: Mapping[str, str]) -> d
                 (not _heading(heading)[2], f"--columns: {heading!r} is not known: {HEADINGS}"),
             ]
         )
-        found[i] = heading
-    return found
+        given[i] = heading
+    return given
 
 
 def _decimal(cell: str) -> str:
     """Return a cell without its error, and with a decimal number for a fraction, feet or a clock.
 
-    >>> [_decimal(each) for each in ("50 ± 0.5 cm", "46 1/2", "6' 2\"", "00:01:02.5")]
+    >>> [_decimal(cell) for cell in ("50 ± 0.5 cm", "46 1/2", "6' 2\"", "00:01:02.5")]
     ['50 cm', '46.5', '74 in', '62.5']
     """
     plain = re.sub(r"\s*(±|\+/-)\s*[\d.,]+", "", cell)
@@ -709,51 +717,55 @@ def _with_units_of_cells(
     cells: list[str], unit: str, is_decimal_comma: bool
 ) -> tuple[list[str], str]:
     """Return the numbers of cells such as 1 meter, and their unit: the SI unit of several."""
-    found = [re.fullmatch(r"([-+−]?[\d.,]*\d)\s*([^\W\d]\S*|%)?", cell) for cell in cells]
-    parts = [each for each in found if each]
-    units = [SPELLED.get((each[2] or "").lower(), each[2]) or unit for each in parts]
-    si = next((each for each in _QUANTITIES if {*units} <= {*units_of(each)}), None)
-    if si is None or len(parts) < sum(map(bool, cells)) or not any(each[2] for each in parts):
+    matches = [re.fullmatch(r"([-+−]?[\d.,]*\d)\s*([^\W\d]\S*|%)?", cell) for cell in cells]
+    parts = [match for match in matches if match]
+    units = [SPELLED.get((part[2] or "").lower(), part[2]) or unit for part in parts]
+    si = next((quantity for quantity in _QUANTITIES if {*units} <= {*units_of(quantity)}), None)
+    if si is None or len(parts) < sum(map(bool, cells)) or not any(part[2] for part in parts):
         return cells, unit
     one = unit or (units[0] if len({*units}) == 1 else si)
-    scales = [Decimal(repr(in_si("unit", f"1 {each}", si))) for each in (one, *units)]
-    plain = (each[1].replace("−", "-") for each in parts)
+    scales = [Decimal(repr(in_si("unit", f"1 {cell_unit}", si))) for cell_unit in (one, *units)]
+    plain = (part[1].replace("−", "-") for part in parts)
     numbers = iter(
-        str(Decimal(each.replace(",", "." if is_decimal_comma else "")) * scale / scales[0])
-        for each, scale in zip(plain, scales[1:], strict=True)
+        str(Decimal(text.replace(",", "." if is_decimal_comma else "")) * scale / scales[0])
+        for text, scale in zip(plain, scales[1:], strict=True)
     )
-    return [next(numbers) if each else "" for each in found], one
+    return [next(numbers) if match else "" for match in matches], one
 
 
 def _with_units(columns: list[Column]) -> list[Column]:
     """Give heights and speeds the unit of the others. Several times in a line are touches."""
-    units = {_UNITS.get(each.role, ""): each.unit for each in reversed(columns) if each.unit}
+    units = {
+        _UNITS.get(column.role, ""): column.unit for column in reversed(columns) if column.unit
+    }
     inherited = {unit: units.get(unit, "") for unit in _INHERITED}
-    times = [each for each in columns if each.role == "time" and re.search(r"\d$", each.name)]
+    times = [
+        column for column in columns if column.role == "time" and re.search(r"\d$", column.name)
+    ]
     return [
         replace(
-            each,
-            unit=each.unit or inherited.get(_UNITS.get(each.role, ""), ""),
-            role="touch" if len(times) > 1 and each in times else each.role,
+            column,
+            unit=column.unit or inherited.get(_UNITS.get(column.role, ""), ""),
+            role="touch" if len(times) > 1 and column in times else column.role,
         )
-        for each in columns
+        for column in columns
     ]
 
 
 def _with_times(head: Mapping[str, str], columns: list[Column]) -> list[Column]:
     """Replace frames by times, if the head has the frame rate and no column has times."""
-    if "frame rate" not in head or any(each.role == "time" for each in columns):
+    if "frame rate" not in head or any(column.role == "time" for column in columns):
         return columns
     rate = positive("frame rate", head["frame rate"], "Hz")
     return [
         replace(
-            each,
+            column,
             unit="s",
             role="time",
-            cells=[f"{number / rate:.9f}" for number in each.numbers],
-            numbers=each.numbers / rate,
+            cells=[f"{number / rate:.9f}" for number in column.numbers],
+            numbers=column.numbers / rate,
         )
-        if each.role == "frame"
-        else each
-        for each in columns
+        if column.role == "frame"
+        else column
+        for column in columns
     ]

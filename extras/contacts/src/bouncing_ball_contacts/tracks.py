@@ -54,7 +54,9 @@ def _repeats(t: Array, y: Array) -> NDArray[np.bool_]:
     """
     is_repeat = np.diff(y, prepend=math.nan) == 0
     for count in range(1, min(4, len(y) - 2)):
-        moves, steps = (np.diff(sliding_window_view(each, count + 3), axis=1) for each in (y, t))
+        moves, steps = (
+            np.diff(sliding_window_view(samples, count + 3), axis=1) for samples in (y, t)
+        )
         before, after = moves[:, 0] / steps[:, 0], moves[:, -1] / steps[:, -1]
         within = np.max(np.abs(np.cumsum(moves[:, 1:-1], axis=1) / steps[:, 1:-1]), axis=1)
         is_among = np.minimum(np.abs(before), np.abs(after)) > 3 * within

@@ -70,7 +70,7 @@ def _flights(tracks: Sequence[Array]) -> tuple[Array, Array, Array, Array]:
 
     Tracks of successive impacts share a flight.
     """
-    begins, ends = np.array([[each[0, 0], each[-1, 0]] for each in tracks]).T
+    begins, ends = np.array([[track[0, 0], track[-1, 0]] for track in tracks]).T
     gaps = np.concatenate([[0], np.cumsum(begins[1:] > ends[:-1])])
     afters = 1 + np.arange(len(tracks)) + gaps
     rows = [
@@ -94,8 +94,8 @@ def _misfit(flight: Array, since: Array, left: Array, degrees: float) -> float:
     """
     squares = 0.0
     free = 0.0
-    for each in range(flight.max() + 1):
-        t, y = since[flight == each], left[flight == each]
+    for index in range(flight.max() + 1):
+        t, y = since[flight == index], left[flight == index]
         if len(t) > 5:
             y = y - np.polyval(np.polyfit(t, y, 4), t)
             free += len(t) - 5
@@ -108,14 +108,14 @@ def _misfit(flight: Array, since: Array, left: Array, degrees: float) -> float:
 
 
 def _seen(
-    found: Array, flight: Array, since: Array, later: Array, y: Array, drag: float
+    parameters: Array, flight: Array, since: Array, later: Array, y: Array, drag: float
 ) -> tuple[Array, Array]:
     """Return where positions of flights are seen, and the derivatives of that, shape (n, 6).
 
     The derivatives are with respect to gravity, c, e, ρ, and the start and slope of each flight.
     """
-    gravity, bend, recede, read = found[:_GLOBALS]
-    start, slope = found[_GLOBALS:].reshape(-1, 2)[flight].T
+    gravity, bend, recede, read = parameters[:_GLOBALS]
+    start, slope = parameters[_GLOBALS:].reshape(-1, 2)[flight].T
     top = slope / gravity
     fallen, speed = fall_of(since - read * y - top, drag)
     p = start + gravity * (top**2 / 2 - fallen)
@@ -166,27 +166,27 @@ def _fitted(
     )
     precision = np.zeros(_GLOBALS + 2 * (flight.max() + 1))
     precision[1:_GLOBALS] = priors
-    found = np.zeros(len(precision))
-    found[0] = gravity
+    parameters = np.zeros(len(precision))
+    parameters[0] = gravity
     noise = 1.0
     # The last steps move nothing any more.
     for _ in range(12):
-        seen, derivatives = _seen(found, flight, since, later, y, drag)
+        seen, derivatives = _seen(parameters, flight, since, later, y, drag)
         jacobian = sparse.csr_matrix(
             (derivatives.ravel(), places.ravel(), np.arange(n + 1) * places.shape[1]),
-            shape=(n, len(found)),
+            shape=(n, len(parameters)),
         )
         left = y - seen
         normal = (jacobian.T @ jacobian).toarray()
         inverse = np.linalg.inv(normal / noise**2 + np.diag(precision))
-        move = inverse @ (jacobian.T @ left / noise**2 - precision * found)
-        found = found + move
-        used = len(found) - np.sum(np.diag(inverse) * precision)
+        move = inverse @ (jacobian.T @ left / noise**2 - precision * parameters)
+        parameters = parameters + move
+        used = len(parameters) - np.sum(np.diag(inverse) * precision)
         noise = math.sqrt(max(float(left @ left) / max(n - used, 1.0), 1e-18))
-        if not (noise < math.inf and found[0] > 0):
+        if not (noise < math.inf and parameters[0] > 0):
             raise np.linalg.LinAlgError("no ball has such flights")
     misfit = _misfit(flight, since, left, n - used)
-    return found, misfit * np.linalg.cholesky(inverse).T, misfit
+    return parameters, misfit * np.linalg.cholesky(inverse).T, misfit
 
 
 def _on_one_floor(state: Array, changes: Array, impacts: int) -> tuple[Array, Array]:
@@ -226,9 +226,9 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
         Whether times are true.
     """
     for _ in range(1 if has_clock else 5):
-        first = np.array([impact_of(each, drag) for each in tracks])
+        first = np.array([impact_of(track, drag) for track in tracks])
         slow = 1.0 if has_clock else math.sqrt(max(first[:, 2].mean() / STANDARD_GRAVITY, 1e-9))
-        tracks = [each * [slow, 1, 1] for each in tracks]
+        tracks = [track * [slow, 1, 1] for track in tracks]
     flight, t, s, after = _flights(tracks)
     down, up, gravities, _, meets, floors, _ = first.T
     none = np.zeros((len(after), 1))
@@ -247,17 +247,17 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
     reads = _READ * max(float(np.median(np.diff(np.unique(t)))), _SLOWEST_READ)
     priors = 1 / np.square([_BEND, _RECEDE, reads])
     try:
-        found, errors, misfit = _fitted(flight, since, later, y, 8 / lasts**2, priors, drag)
+        parameters, errors, misfit = _fitted(flight, since, later, y, 8 / lasts**2, priors, drag)
     except np.linalg.LinAlgError:
         return unlike
     shared = np.flatnonzero(np.diff(after) == 1)
     pairs = np.array([after - 1, after])
     away = middle[after] - middle[pairs]
 
-    def state_of(found: Array) -> Array:
+    def state_of(parameters: Array) -> Array:
         """Return the speeds before and after, that of the floor, and floors less their line."""
-        gravity = found[0]
-        start, slope = found[_GLOBALS:].reshape(-1, 2).T
+        gravity = parameters[0]
+        start, slope = parameters[_GLOBALS:].reshape(-1, 2).T
         starts = start[pairs] + slope[pairs] * away - gravity * away**2 / 2
         meet, floor, *speeds = meeting_of(starts, slope[pairs] - gravity * away, gravity, drag)
         time = middle[after] + meet
@@ -269,8 +269,10 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
         apart = floor - floor.mean() - moves * (time - time.mean())
         return np.concatenate([*(scale * both), [scale * (moves + drifts / span)], apart])
 
-    state = state_of(found)
-    changes = np.array([(state_of(found + each) - state_of(found - each)) / 2 for each in errors])
+    state = state_of(parameters)
+    changes = np.array(
+        [(state_of(parameters + error) - state_of(parameters - error)) / 2 for error in errors]
+    )
     if not (state[: 2 * len(after)].min() > 0 and np.isfinite(changes).all()):
         return unlike
     state, changes = _on_one_floor(state, changes, len(after))
@@ -281,7 +283,7 @@ def film_of(tracks: Sequence[Array], drag: float = 0.0, has_clock: bool = True) 
     # At both ends of a film no floor tells how fast the ball drifts in the picture.
     is_end = np.ones((2, len(after)))
     is_end[1, shared] = is_end[0, shared + 1] = 0
-    at_begin, at_end = (np.diag(each) for each in is_end * KINK * drifts)
+    at_begin, at_end = (np.diag(kink) for kink in is_end * KINK * drifts)
     of_speeds = changes[:, : 2 * len(after)].T.reshape(2, len(after), -1) / speeds[:, :, None]
     of_before = np.column_stack([of_speeds[0], at_begin / speeds[0], 0 * at_end])
     of_up = np.column_stack([of_speeds[1], 0 * at_begin, at_end / speeds[1]])

@@ -173,21 +173,21 @@ def _recording_of(
     return next(iter(balls.values()))
 
 
-def _drag_note(found: Fit, known: Any, rounding: float) -> str:
+def _drag_note(fitted: Fit, known: Any, rounding: float) -> str:
     """Return what the drag of the air does to r; empty if it is less than half of the interval.
 
     ``known`` and ``rounding`` are those of `curves_of`.
     """
-    recording = found.recording
+    recording = fitted.recording
     if recording.kind not in _WITH_DRAG or recording.no_speed:
         return ""
-    is_known = bool(found.mass and found.diameter)
+    is_known = bool(fitted.mass and fitted.diameter)
     # A ball of table tennis does not fall faster than 8.6 m/s.
-    lightest = STANDARD_GRAVITY / (2 * found.impacts.speed.max() ** 2)
-    mass, diameter = (found.mass, found.diameter) if is_known else _TABLE_TENNIS_BALL
+    lightest = STANDARD_GRAVITY / (2 * fitted.impacts.speed.max() ** 2)
+    mass, diameter = (fitted.mass, fitted.diameter) if is_known else _TABLE_TENNIS_BALL
     try:
         r_with, r_without = (
-            estimate(curves_of(impacts_of(recording, drag), known, found.speed, rounding)).of_r[0]
+            estimate(curves_of(impacts_of(recording, drag), known, fitted.speed, rounding)).of_r[0]
             for drag in (min(drag_of(mass or 0.0, diameter or 0.0), lightest), 0.0)
         )
     except Refused:
@@ -200,24 +200,24 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
         else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a ball of "
         "table tennis, and by less for a heavier ball; give --mass and --diameter"
     )
-    return note * (2 * by_drag > found.interval[1] - found.interval[0])
+    return note * (2 * by_drag > fitted.interval[1] - fitted.interval[0])
 
 
-def _contact_note(found: Fit, drag: float, known: Any, rounding: float) -> str:
+def _contact_note(fitted: Fit, drag: float, known: Any, rounding: float) -> str:
     """Return what the contacts do to r of times between impacts, or of flights that meet."""
-    recording = found.recording
+    recording = fitted.recording
     is_film = recording.kind == "track" and not recording.no_speed
     if not is_film and (recording.kind != "flights" or recording.is_free):
         return ""
-    if found.contact_time:
+    if fitted.contact_time:
         return (
-            f"the contact, {show(found.contact_time, 's')}, is taken off each time between two "
+            f"the contact, {show(fitted.contact_time, 's')}, is taken off each time between two "
             "impacts"
         )
-    low, high = found.interval
+    low, high = fitted.interval
     shorter = impacts_of(without_contacts(recording, _SHORT_CONTACT), drag)
-    r = estimate(curves_of(shorter, known, found.speed, rounding)).of_r[0]
-    lower = (found.restitution - r) / _SHORT_CONTACT
+    r = estimate(curves_of(shorter, known, fitted.speed, rounding)).of_r[0]
+    lower = (fitted.restitution - r) / _SHORT_CONTACT
     matters = (high - low) / (2 * lower) if lower > 0 else math.inf
     # Contacts of rubber, the longest ones, last for 10 ms.
     within = "flights meet within" if is_film else "times between impacts include"
@@ -227,14 +227,14 @@ def _contact_note(found: Fit, drag: float, known: Any, rounding: float) -> str:
     )
 
 
-def _film_notes(found: Fit) -> list[str]:
+def _film_notes(fitted: Fit) -> list[str]:
     """Return what the films leave open of the camera."""
-    low, high = found.interval
+    low, high = fitted.interval
     width = high - low
-    v, r = found.impacts.speed, found.impacts.restitution
+    v, r = fitted.impacts.speed, fitted.impacts.restitution
     # Derivative of r with respect to a speed of the picture, which adds to one speed of the ball.
     moved = float(np.mean((1 + r) / v))
-    films = found.impacts.films
+    films = fitted.impacts.films
     misfit = max((film.misfit for film in films), default=1.0)
     floor = max((abs(film.floor) for film in films), default=0.0)
     is_single = bool(films) and all(len(film.speeds) == 1 for film in films)
@@ -246,7 +246,7 @@ def _film_notes(found: Fit) -> list[str]:
                 f"that bends lines or a zoom: errors are taken as {misfit:.2g} times as large",
             ),
             (
-                floor * KINK * moved > width / 4 and not found.recording.has_sideways,
+                floor * KINK * moved > width / 4 and not fitted.recording.has_sideways,
                 f"the floor moves by {show(floor, 'm/s')} in the picture: the interval allows for "
                 "a ball that drifts in a turned picture; a column x of its positions tells",
             ),
@@ -260,16 +260,16 @@ def _film_notes(found: Fit) -> list[str]:
     )
 
 
-def _notes(found: Fit, drag: float, known: Any, rounding: float, value: float) -> tuple[str, ...]:
+def _notes(fitted: Fit, drag: float, known: Any, rounding: float, value: float) -> tuple[str, ...]:
     """Return the notes on a fit, the severest first; `value` is r before it is limited to 1."""
-    impacts = found.impacts
+    impacts = fitted.impacts
     v = impacts.speed
-    at = found.speed
-    unit = KINDS[found.recording.kind][0]
+    at = fitted.speed
+    unit = KINDS[fitted.recording.kind][0]
     wrong = [f"r = {impacts.restitution[i]:.3g} of impact {i + 1}" for i in misread(impacts)]
-    by_drag = _drag_note(found, known, rounding)
-    contact = _contact_note(found, drag, known, rounding)
-    is_taken_off = bool(contact and found.contact_time)
+    by_drag = _drag_note(fitted, known, rounding)
+    contact = _contact_note(fitted, drag, known, rounding)
+    is_taken_off = bool(contact and fitted.contact_time)
     return tuple(
         holding(
             [
@@ -278,23 +278,23 @@ def _notes(found: Fit, drag: float, known: Any, rounding: float, value: float) -
                     f"{', '.join(wrong)}: far from all others, as by one wrong or missing number; "
                     "--leave-out leaves its line out",
                 ),
-                *((True, note) for note in _film_notes(found)),
+                *((True, note) for note in _film_notes(fitted)),
                 (value > 1, f"r = {value:.4f} is above 1 within its error: 1 is taken"),
                 # A speed that is typed is rounded.
                 (
                     not (math.isnan(at) or 0.99 * v.min() <= at <= 1.01 * v.max()),
                     f"{show(at, 'm/s')} is outside of the measured speeds",
                 ),
-                *((True, note) for note in found.recording.notes),
+                *((True, note) for note in fitted.recording.notes),
                 (
-                    found.recording.kind in ("drops", "heights"),
+                    fitted.recording.kind in ("drops", "heights"),
                     "heights are those of the lowest point of the ball: subtract its diameter from "
                     "those of its top",
                 ),
                 (by_drag, by_drag),
                 (contact and not is_taken_off, contact),
                 (
-                    0 < found._groups < 3,
+                    0 < fitted._groups < 3,
                     "impacts of one height, film or ball share an error, which the interval "
                     "contains from three on",
                 ),
@@ -392,7 +392,7 @@ def fit(
                 f"{span(v.min(), v.max(), form='g')} m/s: nothing is known of r there",
             ),
             (
-                all(np.min(np.sum(each**2, axis=1)) > 1 for each in impacts.errors(error)[0]),
+                all(np.min(np.sum(matrix**2, axis=1)) > 1 for matrix in impacts.errors(error)[0]),
                 f"{recording.name}: readings with an error of {show(float(np.max(error)), unit)} "
                 "say nothing of r: is a unit missing?",
             ),
@@ -405,7 +405,7 @@ def fit(
         raise Refused(f"{recording.name}: r = {value:.4f} is above 1 by more than its error")
     has_slope = v.max() > v.min() and curves.has_slope
     _, low, high = estimated.of_r
-    found = Fit(
+    fitted = Fit(
         recording=recording,
         impacts=impacts,
         speed=math.nan if recording.no_speed else at,
@@ -418,4 +418,4 @@ def fit(
         diameter=metres,
         notes=(),
     )
-    return replace(found, notes=_notes(found, drag, known, rounding, value))
+    return replace(fitted, notes=_notes(fitted, drag, known, rounding, value))

@@ -53,7 +53,10 @@ def heights_of(durations: Array, drag: float) -> Array:
 def speeds_of(heights: Array, drag: float) -> tuple[Array, Array]:
     """Return the speeds of a ball that falls from heights in m, and that rises to them."""
     both = max(drag, _NO_DRAG) * np.array([-1.0, 1.0])
-    down, up = (np.sqrt(STANDARD_GRAVITY * np.expm1(2 * each * heights) / each) for each in both)
+    down, up = (
+        np.sqrt(STANDARD_GRAVITY * np.expm1(2 * signed_drag * heights) / signed_drag)
+        for signed_drag in both
+    )
     return down, up
 
 
@@ -109,19 +112,19 @@ def impact_of(track: Array, drag: float = 0.0) -> Array:
     )
     by_drag = np.zeros_like(y)
     for _ in range(8):
-        found = np.linalg.lstsq(columns, y - by_drag, rcond=None)[0]
-        gravity = found[0]
-        start, slope = found[1:].reshape(2, 2)
+        coefficients = np.linalg.lstsq(columns, y - by_drag, rcond=None)[0]
+        gravity = coefficients[0]
+        start, slope = coefficients[1:].reshape(2, 2)
         tops = slope / gravity
         since_top = since - np.where(after > 0, tops[1], tops[0])
         by_drag = gravity * (since_top**2 / 2 - fall_of(since_top, drag)[0])
     meet, floor, down, up = meeting_of(start, slope, gravity, drag)
-    misfit = math.sqrt(float(np.mean((columns @ found + by_drag - y) ** 2)))
+    misfit = math.sqrt(float(np.mean((columns @ coefficients + by_drag - y) ** 2)))
     # Derivatives of ln r of two parabolas with respect to gravity, the starts and the slopes.
     sum_of_both = 1 / up + 1 / down
     moves = gravity * sum_of_both / np.diff(slope)[0]
     of_meet = np.array([0.0, -moves, moves, -moves * meet, moves * meet])
     of_r = of_meet + [-meet * sum_of_both, 0.0, 0.0, 1 / down, 1 / up]
     spread = np.linalg.norm(of_r @ np.linalg.pinv(columns))
-    error = misfit * spread * math.sqrt(len(t) / max(len(t) - len(found), 1))
+    error = misfit * spread * math.sqrt(len(t) / max(len(t) - len(coefficients), 1))
     return np.array([down, up, gravity, misfit, begin + meet, floor, error])

@@ -150,7 +150,7 @@ class Impacts:
         """Return M and L times the standard deviation of the readings, or that of each r."""
         sizes = np.broadcast_to(size, len(self.readings))
         of_r, of_speed = (
-            [each * matrix for each, matrix in zip(sizes, matrices, strict=True)]
+            [deviation * matrix for deviation, matrix in zip(sizes, matrices, strict=True)]
             for matrices in (self.readings, self.of_speed)
         )
         return of_r, of_speed
@@ -160,7 +160,7 @@ class Impacts:
 
         If it is not known, all deviations of r are errors of the readings.
         """
-        squares = max(sum(float(np.sum(each**2)) for each in self.readings), _ARITHMETIC)
+        squares = max(sum(float(np.sum(matrix**2)) for matrix in self.readings), _ARITHMETIC)
         largest = math.sqrt(len(self.log_r) * float(np.var(self.log_r)) / squares)
         return largest if known is None else min(largest, float(np.max(known)))
 
@@ -172,13 +172,13 @@ def _derivatives(kind: str, values: Array) -> Iterator[tuple[Array, Array]]:
     if values.ndim == 2:
         # A height of a drop and a speed of a coefficient are set, and not read.
         is_read = kind in ("speeds", "track")
-        each = power / values
-        readings = (each * [-1, 1])[:, None]
-        yield from zip(readings, (each * [is_read, 0])[:, None], strict=True)
+        derivatives = power / values
+        readings = (derivatives * [-1, 1])[:, None]
+        yield from zip(readings, (derivatives * [is_read, 0])[:, None], strict=True)
     elif n > 1:
         # A flight is the difference of two readings.
-        each = np.diff(np.eye(n + 1), axis=0) if kind == "flights" else np.eye(n)
-        log_v = power[0] * each / values[:, None]
+        derivatives = np.diff(np.eye(n + 1), axis=0) if kind == "flights" else np.eye(n)
+        log_v = power[0] * derivatives / values[:, None]
         yield np.diff(log_v, axis=0), log_v[:-1]
 
 
@@ -253,7 +253,7 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     if kind in ("flights", "heights", "drops"):
         before, _ = speeds_of(before, drag)
         _, after = speeds_of(after, drag)
-    series = [each for values in chains for each in _derivatives(kind, values)]
+    series = [derivatives for values in chains for derivatives in _derivatives(kind, values)]
     known = recording.uncertainty
     if films:
         # The error of a speed to which the errors of a film amount.
@@ -290,7 +290,7 @@ def group_means(
         rows: list[list[Array]] = [[] for _ in names]
         for i, matrix in zip(of[begins], matrices, strict=True):
             rows[i].append(matrix.sum(axis=0) / sizes[i])
-        return tuple(np.concatenate(each)[None] for each in rows)
+        return tuple(np.concatenate(members)[None] for members in rows)
 
     readings, of_speed = map(of_means, impacts.errors(unit))
     log_v = np.bincount(of, np.log(impacts.speed)) / sizes
@@ -324,17 +324,17 @@ def misread(impacts: Impacts) -> Lines:
     others = np.abs(np.delete(away, slice(begin, end))).max(initial=0.0)
     left = np.maximum(np.abs(away[begin:end, None] - moved).max(axis=0), others)
     worst = int(np.argmin(left))
-    found = begin + np.flatnonzero(readings[:, worst])
+    indices = begin + np.flatnonzero(readings[:, worst])
     # Two impacts seldom deviate oppositely by themselves, as one may.
-    least = 0.05 if len(found) > 1 else 0.2
+    least = 0.05 if len(indices) > 1 else 0.2
     is_far = np.abs(moved[:, worst]).max() > max(least, 5 * left[worst])
-    return found if is_far and len(away) - len(found) > 2 else found[:0]
+    return indices if is_far and len(away) - len(indices) > 2 else indices[:0]
 
 
 def _without_contact(recording: Recording, lasts: float) -> Iterator[Array]:
     """Yield the tracks of a recording without positions and time of the contacts in s."""
     for film in recording.films:
-        fits = np.array([impact_of(each) for each in film])
+        fits = np.array([impact_of(track) for track in film])
         # Times of slow motion are longer than true ones.
         slow = 1.0 if recording.has_clock else math.sqrt(STANDARD_GRAVITY / fits[:, 2].mean())
         for i, track in enumerate(film):
@@ -509,17 +509,19 @@ def curves_of(
     impacts, known = group_means(impacts, known)
     n = len(impacts.log_r)
     unit = impacts.usual if known is None else known
-    each_variance = [np.sum(each**2, axis=1) for each in impacts.errors(unit)[0]]
+    each_variance = [np.sum(matrix**2, axis=1) for matrix in impacts.errors(unit)[0]]
     error = math.sqrt(np.median(np.concatenate(each_variance)))
     errors, errors_of_speed = impacts.errors(unit / error)
-    each_eigenvalues, bases = zip(*(np.linalg.eigh(each @ each.T) for each in errors), strict=True)
+    each_eigenvalues, bases = zip(
+        *(np.linalg.eigh(matrix @ matrix.T) for matrix in errors), strict=True
+    )
     eigenvalues = np.concatenate(each_eigenvalues)
     ends = np.cumsum(list(map(len, errors)))[:-1]
 
     def in_basis(columns: Array) -> Array:
         """Return columns in the basis of the eigenvectors of each series."""
         both = zip(bases, np.split(columns, ends), strict=True)
-        return np.concatenate([np.tensordot(basis, each, axes=(0, 0)) for basis, each in both])
+        return np.concatenate([np.tensordot(basis, part, axes=(0, 0)) for basis, part in both])
 
     # What is known of ln τ, or else of ln s, has a width of at least 1/√(2 n). Steps of 1/20 are
     # enough, because an error of 5 % in scatter is one of 5 % in the width.
@@ -563,7 +565,7 @@ def curves_of(
     traces = _by_errors(weights, bases, errors, errors_of_speed, growth)
     # Larger errors than the deviations have a posterior of about 0.
     largest = impacts.largest_error(known) * error / np.max(unit)
-    made, lost = (each[:, None] * np.minimum(1.0, largest**2 * precision) for each in traces)
+    made, lost = (trace[:, None] * np.minimum(1.0, largest**2 * precision) for trace in traces)
     squares_of_bends = (products[..., 1, 1] - shift**2 * ones)[:, None] * precision
     of_bends = np.maximum(squares_of_bends - lost, 0.0) + _SLOPE**-2
     slope = ((pull[..., 1] - shift * pull[..., 0])[:, None] * precision - made) / of_bends
@@ -580,7 +582,7 @@ def curves_of(
     confidence = np.concatenate([np.zeros_like(shares[:1]), special.softmax(posterior[1:])])
     if n > 2:
         # One exponent at a time, because these arrays are the largest ones.
-        below = [_below(weights, each[None], y, sizes) for each in columns]
+        below = [_below(weights, regressors[None], y, sizes) for regressors in columns]
         shares_below = np.concatenate(below, axis=-1)
         confidence = _confidence(confidence, shares_below, above / impacts.width)
     return Curves(

@@ -29,7 +29,7 @@ def typed(monkeypatch, capsys):
         monkeypatch.setattr(sys, "argv", ["bounce", *shlex.split(line)])
         with pytest.raises(SystemExit) as ended:
             cli.run()
-        found = capsys.readouterr()
-        return ended.value.code or 0, found.out, found.err
+        captured = capsys.readouterr()
+        return ended.value.code or 0, captured.out, captured.err
 
     return run

@@ -28,13 +28,13 @@ def test_the_first_sentence_that_one_types(typed):
 
 
 def test_everything_in_json(typed):
-    found = json.loads(typed(f"{SHORT} --engine pybullet --time-step 1/240 --json")[1])
-    assert found["outcome"]["rest"] > 0
-    assert found["parameters"]["contactStiffness"] > 0 and "changeDynamics" in found["snippet"]
-    found = json.loads(typed(f"{MUJOCO} --restitution 0.5 --json")[1])
-    assert found["parameters"]["solref"] == [0.02, 1.0]
-    found = json.loads(typed("fit croquet --engine pybullet --time-step 1/240 --json")[1])
-    assert len(found["interval"]) == 2 and "changeDynamics" in found["design"]["snippet"]
+    answer = json.loads(typed(f"{SHORT} --engine pybullet --time-step 1/240 --json")[1])
+    assert answer["outcome"]["rest"] > 0
+    assert answer["parameters"]["contactStiffness"] > 0 and "changeDynamics" in answer["snippet"]
+    answer = json.loads(typed(f"{MUJOCO} --restitution 0.5 --json")[1])
+    assert answer["parameters"]["solref"] == [0.02, 1.0]
+    answer = json.loads(typed("fit croquet --engine pybullet --time-step 1/240 --json")[1])
+    assert len(answer["interval"]) == 2 and "changeDynamics" in answer["design"]["snippet"]
 
 
 @pytest.mark.parametrize(

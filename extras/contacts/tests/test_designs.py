@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
+from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, designs, diagnose
 from bouncing_ball_contacts.answers import Outcome, Range
-from bouncing_ball_contacts.designs import _COUNTS, Candidate, Problem, answer
+from bouncing_ball_contacts.designs import _COUNTS, Candidate, Problem
 from bouncing_ball_contacts.rows import BY_NUMBER
 from bouncing_ball_contacts.schemes import SemiImplicit, exact, offsets
 
@@ -29,29 +29,29 @@ def test_every_engine_keeps_the_permitted_penetration(name):
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_every_engine_has_a_contact_at_a_given_step(name, of_ball):
-    found = of_ball(name)
-    assert found.time_step == 0.5e-3 and found.outcome.restitution.deviation(0.8) <= 0.0205
+    answer = of_ball(name)
+    assert answer.time_step == 0.5e-3 and answer.outcome.restitution.deviation(0.8) <= 0.0205
     # The contact of a short step is less deep.
-    assert found.also[0].outcome.depth[1] <= 3e-3
+    assert answer.also[0].outcome.depth[1] <= 3e-3
 
 
 def test_the_search_of_a_contact_ends_where_a_body_would_sink_too_far():
     """More steps in a contact make r wrong again: the contact is softer, and the body heavy."""
     bounce = Bounce(mass="0.5 kg", restitution=0.05, radius="0.1 m", drop_height="1 m")
-    found = design(bounce, "drake", time_step="1/60")
-    assert found.time_step == pytest.approx(1 / 120, rel=1e-4)
-    assert found.is_kept and found.outcome.depth[1] < 0.1
+    answer = design(bounce, "drake", time_step="1/60")
+    assert answer.time_step == pytest.approx(1 / 120, rel=1e-4)
+    assert answer.is_kept and answer.outcome.depth[1] < 0.1
 
 
 def test_a_step_between_the_extremes_is_found():
     """At 5 ms 245 µs were written, 20 times the cost."""
     ball = Bounce(mass=1, radius=0.1, restitution=0.8)
-    found = design(ball, "mujoco", "5 ms")
-    assert found.time_step == 2.5e-3 and found.outcome.depth[1] < ball.size
-    assert found.outcome.restitution.deviation(0.8) <= 0.0205
-    assert "mujoco, 2.5 ms (not 5 ms): r = 0.8" in str(found)
-    assert "at 5 ms a contact with this r is too deep" in str(found)
-    assert "Also good: --time-step 244µs sinks 9.98 mm." in str(found)
+    answer = design(ball, "mujoco", "5 ms")
+    assert answer.time_step == 2.5e-3 and answer.outcome.depth[1] < ball.size
+    assert answer.outcome.restitution.deviation(0.8) <= 0.0205
+    assert "mujoco, 2.5 ms (not 5 ms): r = 0.8" in str(answer)
+    assert "at 5 ms a contact with this r is too deep" in str(answer)
+    assert "Also good: --time-step 244µs sinks 9.98 mm." in str(answer)
 
 
 @pytest.mark.parametrize(
@@ -61,10 +61,10 @@ def test_a_step_between_the_extremes_is_found():
 def test_a_slow_ball_that_its_weight_presses_in_has_a_stiffer_contact(name, r, radius, height):
     """Contacts as deep as they may be had 0.035 to 0.085 for 0.06: "no contact with a nearer r"."""
     ball = Bounce(mass=0.5, restitution=r, radius=radius, drop_height=height)
-    found = design(ball, name)
+    answer = design(ball, name)
     # The step is one with half of the tolerance, and r is that of the rounded numbers.
-    assert found.outcome.restitution.deviation(r) <= 0.0105
-    assert found.outcome.depth[1] < 0.1 * ball.limit
+    assert answer.outcome.restitution.deviation(r) <= 0.0105
+    assert answer.outcome.depth[1] < 0.1 * ball.limit
 
 
 @pytest.mark.parametrize(
@@ -78,8 +78,8 @@ def test_a_slow_ball_that_its_weight_presses_in_has_a_stiffer_contact(name, r, r
 )
 def test_every_restitution_is_reached(name, r):
     """e⁻² = 0.135 is where a damping ratio of 1 is passed."""
-    found = design(Bounce(mass="1 kg", restitution=r, contact_time="4 ms"), name)
-    mean = found.outcome.restitution[1]
+    answer = design(Bounce(mass="1 kg", restitution=r, contact_time="4 ms"), name)
+    mean = answer.outcome.restitution[1]
     # The step of this row is one with half of the tolerance.
     assert mean == pytest.approx(r, abs=0.01)
 
@@ -106,24 +106,24 @@ def test_a_step_that_keeps_the_penetration_and_the_tolerance_is_written():
     """It was called too long, because r was not within half of the tolerance."""
     wanted = dict(mass="200 g", restitution=0.7, drop_height="50 cm", radius="4 cm")
     bounce = Bounce(**wanted, penetration="6 mm")
-    found = design(bounce, "drake-sap", "176 us")
-    assert design(bounce, "drake-sap").time_step < found.time_step == 176e-6
+    answer = design(bounce, "drake-sap", "176 us")
+    assert design(bounce, "drake-sap").time_step < answer.time_step == 176e-6
     # As compliant as the penetration permits.
-    assert 5.9e-3 <= found.outcome.depth[1] <= 6e-3
-    assert found.outcome.restitution.deviation(0.7) <= 0.02
-    assert "keeps what you gave" not in str(found)
+    assert 5.9e-3 <= answer.outcome.depth[1] <= 6e-3
+    assert answer.outcome.restitution.deviation(0.7) <= 0.02
+    assert "keeps what you gave" not in str(answer)
 
 
 def test_a_step_that_cannot_keep_the_penetration_says_which_one_is_written():
-    found = design(Bounce(**BALL, penetration="1 mm"), "drake-sap", "2 ms")
-    assert found.time_step < 2e-3 and "(not 2 ms)" in found.result
-    assert "at 2 ms no contact keeps what you gave" in str(found)
+    answer = design(Bounce(**BALL, penetration="1 mm"), "drake-sap", "2 ms")
+    assert answer.time_step < 2e-3 and "(not 2 ms)" in answer.result
+    assert "at 2 ms no contact keeps what you gave" in str(answer)
 
 
 def test_a_spring_that_gains_energy_is_said_so():
-    found = design(Bounce(mass="1 kg", restitution=1, radius="10 cm"), "mujoco", "1 ms")
-    most = found.outcome.restitution[2]
-    assert most > 1.001 and f"the body gains energy: r is up to {most:.3f}" in repr(found)
+    answer = design(Bounce(mass="1 kg", restitution=1, radius="10 cm"), "mujoco", "1 ms")
+    most = answer.outcome.restitution[2]
+    assert most > 1.001 and f"the body gains energy: r is up to {most:.3f}" in repr(answer)
 
 
 def test_a_bounce_is_needed():
@@ -149,8 +149,8 @@ def test_an_engine_with_springs_and_a_number_bounces_by_its_number(name):
     ball = Bounce(mass="500 g", restitution=0.8, radius="10 cm")
     number = BY_NUMBER[name].parameter
     for bounce, step in ((ball, "1 ms"), (replace(ball, points=4), "1/60"), (ball, None)):
-        found = design(bounce, name, step)
-        assert number in found.parameters and found.outcome.restitution.deviation(0.8) <= 0.02
+        answer = design(bounce, name, step)
+        assert number in answer.parameters and answer.outcome.restitution.deviation(0.8) <= 0.02
     assert number not in design(replace(ball, penetration=0.05), name, "1 ms").parameters
     assert number not in design(replace(ball, restitution=0), name, "1 ms").parameters
     # A ball that moves by more than its radius in a step passes through a table.
@@ -180,9 +180,9 @@ def test_a_ball_that_slides_in_mujoco_is_within_the_range_of_one_line(r, along, 
     greatest r. "From r = 0.6 on also of bodies that slide" was too much.
     """
     ball = Bounce(mass="80 g", radius="13.5 mm", speed=2, restitution=r, friction=0.5)
-    found = design(ball, "mujoco", "1 ms")
+    answer = design(ball, "mujoco", "1 ms")
     problem = Problem(ball, ENGINES["mujoco"])
-    assert most <= problem.promised(found.outcome, along)[1] + 5e-4
+    assert most <= problem.promised(answer.outcome, along)[1] + 5e-4
 
 
 def test_density_and_radius_are_a_mass():
@@ -213,12 +213,12 @@ def test_a_body_at_rest_is_not_thrown_back():
     by 1.7 mm for r = 0.8. Above g h/(1 - E) it lay still.
     """
     ball = Bounce(mass="500 g", restitution=0.9, radius="10 cm", drop_height="30 cm")
-    found = design(ball, "pybullet", "1/240")
-    least = 9.80665 / 240 / (1 - found.numbers["number"])
-    threshold = found.parameters["restitutionVelocityThreshold"]
+    answer = design(ball, "pybullet", "1/240")
+    least = 9.80665 / 240 / (1 - answer.numbers["number"])
+    threshold = answer.parameters["restitutionVelocityThreshold"]
     assert least < threshold < 1.2 * least
-    assert "drops under" in repr(found) and "hop for ever" not in repr(found)
-    too_low = {**found.parameters, "restitutionVelocityThreshold": 0.9 * least}
+    assert "drops under" in repr(answer) and "hop for ever" not in repr(answer)
+    too_low = {**answer.parameters, "restitutionVelocityThreshold": 0.9 * least}
     assert "it may hop for ever" in repr(diagnose(ball, "pybullet", too_low, "1/240"))
 
 
@@ -227,29 +227,29 @@ def test_a_contact_of_mujoco_says_that_it_hardly_feels_gravity():
     ball = Bounce(mass=0.5, radius=0.1, restitution=0.9, drop_height=0.3)
     hops = re.search(r"hops by up to about ([\d.]+) mm", repr(design(ball, "mujoco", "1/240")))
     assert hops and 5.8 < float(hops[1]) < 12
-    assert "hops by" not in repr(found := design(ball, "mujoco", "1 ms"))
-    assert found.outcome.rest is None and "feel 0.1 % of gravity" in found.explained
+    assert "hops by" not in repr(answer := design(ball, "mujoco", "1 ms"))
+    assert answer.outcome.rest is None and "feel 0.1 % of gravity" in answer.explained
 
 
 def test_a_body_of_several_points_is_a_cube():
     """It was called a solid ball of steel."""
-    found = design(Bounce(mass="1 kg", restitution=0.8, points=4), "mujoco", "2 ms")
+    answer = design(Bounce(mass="1 kg", restitution=0.8, points=4), "mujoco", "2 ms")
     assert (
-        "a solid cube of steel (give its size or density), half height 25.2 mm" in found.explained
+        "a solid cube of steel (give its size or density), half height 25.2 mm" in answer.explained
     )
-    assert "radius" not in found.explained.split("Not for")[
+    assert "radius" not in answer.explained.split("Not for")[
         0
-    ] and found.bounce.size**3 * 8 * 7850 == pytest.approx(1)
+    ] and answer.bounce.size**3 * 8 * 7850 == pytest.approx(1)
 
 
 def test_implicit_steps_that_damp_too_much_are_said_so():
     """Drake has r = 0.971 at most with k = 866 kN/m at 20 µs, and said nothing."""
     wanted = Bounce(mass="1 kg", restitution=0.99, stiffness="866 kN/m")
-    found = design(wanted, "drake-sap", "20 us")
-    most = found.outcome.restitution[1]
+    answer = design(wanted, "drake-sap", "20 us")
+    most = answer.outcome.restitution[1]
     # Drake refuses the whole number 0.
-    assert found.parameters["relaxation_time"] == 0 and "float(0)" in found.snippet
-    assert f"without damping r is still {most:.3f}, because the steps damp" in repr(found)
+    assert answer.parameters["relaxation_time"] == 0 and "float(0)" in answer.snippet
+    assert f"without damping r is still {most:.3f}, because the steps damp" in repr(answer)
     assert "without damping" not in repr(design(wanted, "drake-sap", "5 us"))
 
 
@@ -269,23 +269,23 @@ def test_what_was_dropped_outside_the_promise_is_not_promised():
 def test_a_step_at_which_no_spring_works_is_said_so():
     """5 g at r = 0.95 and 10 ms once lay 877 mm deep in Drake."""
     bounce = Bounce(mass="5 g", restitution=0.95, drop_height="1 m")
-    found = design(bounce, "drake-sap", "10 ms")
-    assert found.time_step < 1e-2 and "moves 44.3 mm in a step" in str(found)
-    assert found.outcome.rest < 0.1 * found.bounce.size
+    answer = design(bounce, "drake-sap", "10 ms")
+    assert answer.time_step < 1e-2 and "moves 44.3 mm in a step" in str(answer)
+    assert answer.outcome.rest < 0.1 * answer.bounce.size
 
 
 @pytest.mark.parametrize("name", ["lammps", "lammps-hertz"])
 def test_grains_are_not_lost_in_a_wall(name):
     """A grain whose centre passes the wall was lost: "Lost atoms"."""
-    found = design(Bounce(mass="50 g", restitution=0.8, radius="30 mm"), name, "4 ms")
-    for each in (found, *found.also):
-        assert each.outcome.depth[1] < 0.03
+    answer = design(Bounce(mass="50 g", restitution=0.8, radius="30 mm"), name, "4 ms")
+    for candidate in (answer, *answer.also):
+        assert candidate.outcome.depth[1] < 0.03
 
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_points_share_the_force(name):
     one, four = (
-        answer(problem, problem.candidate(depth=2e-3, ratio=0.1, step=1e-5), None)
+        designs.answer(problem, problem.candidate(depth=2e-3, ratio=0.1, step=1e-5), None)
         for problem in (Problem(replace(SHORT, points=n), ENGINES[name]) for n in (1, 4))
     )
     assert four.outcome.restitution == pytest.approx(one.outcome.restitution, abs=1e-3)
@@ -309,8 +309,8 @@ def test_what_holds_of_boxes_is_said_of_them_alone():
 
 
 def test_friction_is_named_where_it_changes_the_bounce(of_ball):
-    found = design(Bounce(**BALL, friction=0.5), "mujoco")
-    assert "holds at every friction" in found.explained
+    answer = design(Bounce(**BALL, friction=0.5), "mujoco")
+    assert "holds at every friction" in answer.explained
     assert "friction" not in of_ball("mujoco").explained
 
 
@@ -329,8 +329,8 @@ def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
         ("newton", "mu=0.5"),
         ("newton-mujoco", "mu=0.5"),
     ):
-        found = design(wanted, name)
-        assert text in found.snippet and "not in what" not in found.explained
+        answer = design(wanted, name)
+        assert text in answer.snippet and "not in what" not in answer.explained
         without = of_ball(name).snippet.lower()
         assert name == "ode" or ("friction" not in without and "mu=" not in without)
     assert "mu=0)" in design(replace(SHORT, friction=0), "newton").snippet
@@ -341,14 +341,14 @@ def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
 
 def test_a_contact_deeper_than_the_radius_is_said_so(of_ball):
     """2.49 m of a ball of 31 mm went without a warning; a contact time is refused."""
-    found = design(Bounce(mass=1, restitution=0.6, stiffness="10 N/m"), "mujoco", "10 ms")
-    assert found.outcome.depth[1] > found.bounce.size
-    assert "it sinks deeper than its radius of 31.2 mm" in repr(found)
+    answer = design(Bounce(mass=1, restitution=0.6, stiffness="10 N/m"), "mujoco", "10 ms")
+    assert answer.outcome.depth[1] > answer.bounce.size
+    assert "it sinks deeper than its radius of 31.2 mm" in repr(answer)
     assert "deeper than" not in repr(of_ball("mujoco"))
 
 
 def test_a_step_may_be_given_as_a_rate():
-    rate, step = (design(SHORT, "drake-sap", each) for each in ("240 Hz", "1/240"))
+    rate, step = (design(SHORT, "drake-sap", time_step) for time_step in ("240 Hz", "1/240"))
     assert rate.parameters == step.parameters and "time step 4.167 ms" in rate.explained
 
 
@@ -362,17 +362,17 @@ def test_an_impact_may_be_without_gravity():
 
 def test_lammps_takes_no_restitution_of_zero():
     """It was written for r = 0, and LAMMPS, which takes its logarithm, gave no numbers."""
-    found = design(Bounce(mass=1, restitution=0, contact_time="4 ms"), "lammps-hertz", "0.1 ms")
-    assert found.parameters["e"] > 0 and found.outcome.restitution[2] < 0.02
+    answer = design(Bounce(mass=1, restitution=0, contact_time="4 ms"), "lammps-hertz", "0.1 ms")
+    assert answer.parameters["e"] > 0 and answer.outcome.restitution[2] < 0.02
 
 
 @pytest.mark.parametrize("name", list(ENGINES))
 def test_every_snippet_has_the_numbers_that_were_computed(name, of_ball):
-    found = of_ball(name)
-    assert "{step" not in found.snippet
-    for value in found.parameters.values():
+    answer = of_ball(name)
+    assert "{step" not in answer.snippet
+    for value in answer.parameters.values():
         for number in np.atleast_1d(value):
-            assert f"{number:.6g}" in found.snippet
+            assert f"{number:.6g}" in answer.snippet
 
 
 class NoneKeeps(Problem):
@@ -390,9 +390,9 @@ def test_if_no_contact_keeps_all_a_shallow_one_comes_before_a_near_one():
     problem = NoneKeeps(Bounce(mass=1, radius=0.1, restitution=0.8), ENGINES["generic"])
     depths = [problem.keeping(problem.step_of(n)).outcome.depth[1] for n in (4, 250)]
     assert depths[0] > problem.bounce.limit > depths[1]
-    found = problem.wanted()
-    assert found.step < 5e-5
-    assert found.step == max(step for n in _COUNTS if (step := problem.step_of(n)(1e-3)) < 5e-5)
+    contact = problem.wanted()
+    assert contact.step < 5e-5
+    assert contact.step == max(step for n in _COUNTS if (step := problem.step_of(n)(1e-3)) < 5e-5)
 
 
 def random_request(rng):
@@ -405,15 +405,15 @@ def random_request(rng):
     return wanted, str(rng.choice(list(ENGINES))), float(10 ** rng.uniform(-4.7, -2))
 
 
-def largest_deviation(found, change):
+def largest_deviation(answer, change):
     """Return that of r of a design if mass, stiffness and step are off by the relative change."""
-    problem = Problem(found.bounce, ENGINES[found.engine])
-    one = {**problem.engine.defaults, **found.parameters}
+    problem = Problem(answer.bounce, ENGINES[answer.engine])
+    one = {**problem.engine.defaults, **answer.parameters}
     combined = problem.engine.combined(one, one)
     trials = exact(offsets(101))
     deviations = []
     for of_mass, of_stiffness, of_step in product((1 - change, 1 + change), repeat=3):
-        step = of_step * found.time_step
+        step = of_step * answer.time_step
         setting = problem.setting(step)
         law = problem.engine.read(combined, replace(setting, mass=of_mass * setting.mass))
         law = replace(law, stiffness=of_stiffness * law.stiffness)
@@ -426,10 +426,10 @@ def test_a_design_keeps_its_tolerance_if_mass_stiffness_and_step_are_off_by_half
     rng = np.random.default_rng(4)
     for _ in range(4):
         wanted, name, step = random_request(rng)
-        found = design(wanted, ENGINES[name], step)
-        allowed = max(0.02, found.outcome.restitution.deviation(wanted.restitution))
+        answer = design(wanted, ENGINES[name], step)
+        allowed = max(0.02, answer.outcome.restitution.deviation(wanted.restitution))
         # Half of the last printed digit.
-        assert largest_deviation(found, 0.005) <= allowed + 5e-4, (wanted, name, step)
+        assert largest_deviation(answer, 0.005) <= allowed + 5e-4, (wanted, name, step)
 
 
 def test_a_lucky_stiffness_is_not_promised():
@@ -448,17 +448,17 @@ def test_a_lucky_stiffness_is_not_promised():
 def test_a_fine_step_in_a_compliant_contact_keeps_its_damping():
     """A limit of 3,000 steps once left a damping of 0 and r = 0 without a word."""
     wanted = Bounce(mass="1 kg", restitution=0.8, stiffness="10 N/m", radius="1 m")
-    found = design(wanted, "generic", "5 us")
-    assert found.parameters["damping"] > 0.1
-    assert found.outcome.restitution[1] > 0.3
+    answer = design(wanted, "generic", "5 us")
+    assert answer.parameters["damping"] > 0.1
+    assert answer.outcome.restitution[1] > 0.3
 
 
 def test_a_body_that_creeps_is_deepest_at_rest():
     """It sank 13.54 mm, lay 14.54 mm deep, and 13.63 mm were permitted."""
     wanted = Bounce(mass=83.225, restitution=0, gravity=1.62, drop_height=2.8669)
-    found = design(wanted, "generic", "0.3 ms")
-    assert found.time_step == found.asked_step
-    assert found.outcome.rest <= found.outcome.depth[1] <= wanted.limit
+    answer = design(wanted, "generic", "0.3 ms")
+    assert answer.time_step == answer.asked_step
+    assert answer.outcome.rest <= answer.outcome.depth[1] <= wanted.limit
 
 
 def test_a_design_has_a_step_that_can_be_given():
@@ -488,7 +488,7 @@ def test_an_engine_of_the_table_stands_for_its_name():
     assert design(wanted, ENGINES["generic"]).engine == "generic"
     # An engine that another one is made of is that engine, and not the one of its name.
     light = replace(ENGINES["generic"], scheme=SemiImplicit(approach=True))
-    ours, theirs = (design(wanted, each).parameters["damping"] for each in (light, "generic"))
+    ours, theirs = (design(wanted, engine).parameters["damping"] for engine in (light, "generic"))
     assert ours > 1.5 * theirs
     # One of another name has no snippet here, and a diagnosis as well.
     named = replace(light, name="ours")
@@ -502,10 +502,10 @@ def test_an_engine_of_the_table_stands_for_its_name():
 def test_no_rebound_needs_no_short_step(name):
     """It was said that no spring works at 2 ms, and a step of 34 µs left r = 0.014 ± 0.016."""
     foot = Bounce(mass="40 kg", restitution=0, points=4, radius="3 cm", speed="1 m/s")
-    found = design(foot, name, "2 ms")
-    assert found.time_step == found.asked_step
-    assert found.outcome.restitution[2] < 0.02
-    assert found.outcome.depth[1] <= foot.limit
+    answer = design(foot, name, "2 ms")
+    assert answer.time_step == answer.asked_step
+    assert answer.outcome.restitution[2] < 0.02
+    assert answer.outcome.depth[1] <= foot.limit
     # A crate dropped from 1 m moves by nine tenths of the limit in a step.
     high = design(Bounce(mass="1 kg", restitution=0, radius="5 cm"), name, "1 ms")
     assert high.outcome.restitution[2] < 0.02
@@ -531,9 +531,9 @@ def test_friction_in_mujoco_is_said_to_be_weak():
     crept at 7.4 mm/s on a slope of 10°.
     """
     ball = Bounce(mass=0.6, radius=0.12, restitution=0.76, drop_height=1.8, friction=0.8)
-    found = design(ball, "mujoco", "2 ms")
-    assert "leaves exp(-π b/ω) of a sliding speed" in found.explained
-    assert math.exp(-math.pi * found.numbers["damping_ratio"] * 2) == pytest.approx(0.55, abs=0.03)
+    answer = design(ball, "mujoco", "2 ms")
+    assert "leaves exp(-π b/ω) of a sliding speed" in answer.explained
+    assert math.exp(-math.pi * answer.numbers["damping_ratio"] * 2) == pytest.approx(0.55, abs=0.03)
 
 
 @pytest.mark.parametrize(
@@ -560,6 +560,6 @@ def test_a_number_that_may_be_meant_is_not_asked_for(given):
 
 
 def test_lines_of_another_step_are_in_what_is_explained():
-    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "0.5 ms")
-    (also,) = found.also
-    assert also.snippet in found.explained and also.snippet not in str(found)
+    answer = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "0.5 ms")
+    (also,) = answer.also
+    assert also.snippet in answer.explained and also.snippet not in str(answer)

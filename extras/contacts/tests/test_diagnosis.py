@@ -40,9 +40,9 @@ def asked(wanted, engine, parameters, step, **more):
     ],
 )
 def test_a_design_is_diagnosed_as_it_was_designed(engine, of_ball):
-    found = of_ball(engine)
-    again = diagnose(found.bounce, ENGINES[engine], found.parameters, found.time_step)
-    assert again.outcome == found.outcome
+    answer = of_ball(engine)
+    again = diagnose(answer.bounce, ENGINES[engine], answer.parameters, answer.time_step)
+    assert again.outcome == answer.outcome
     assert pickle.loads(pickle.dumps(again)) == again
     assert again.change is None
 
@@ -62,23 +62,23 @@ def test_a_design_is_diagnosed_as_it_was_designed(engine, of_ball):
     ],
 )
 def test_the_least_change_has_the_wanted_restitution(engine, parameters, step):
-    found = asked(0.6, engine, parameters, step)
-    assert found.change.outcome.restitution[1] == pytest.approx(0.6, abs=0.02)
+    diagnosis = asked(0.6, engine, parameters, step)
+    assert diagnosis.change.outcome.restitution[1] == pytest.approx(0.6, abs=0.02)
     # Beside kp and kd nothing can be typed.
-    changed = {**(parameters if "kp" not in parameters else {}), **found.change.parameters}
-    again = asked(0.6, engine, changed, found.change.time_step)
-    assert again.outcome == found.change.outcome
-    assert "Least change: " in str(found)
+    changed = {**(parameters if "kp" not in parameters else {}), **diagnosis.change.parameters}
+    again = asked(0.6, engine, changed, diagnosis.change.time_step)
+    assert again.outcome == diagnosis.change.outcome
+    assert "Least change: " in str(diagnosis)
 
 
 def test_a_least_change_keeps_the_tolerance_if_need_be_at_a_shorter_step():
-    found = asked(0.5, "mujoco", {"solref": "-1e5 -200"}, "2 ms")
+    diagnosis = asked(0.5, "mujoco", {"solref": "-1e5 -200"}, "2 ms")
     assert (
-        found.change.outcome.restitution.deviation(0.5) <= 0.02
-        and found.change.time_step < found.time_step
+        diagnosis.change.outcome.restitution.deviation(0.5) <= 0.02
+        and diagnosis.change.time_step < diagnosis.time_step
     )
     # Then the nearest damping at this step is named.
-    reason = "; ".join(found.warnings)
+    reason = "; ".join(diagnosis.warnings)
     assert "damping of this contact keeps r within 0.02 at this step" in reason
     assert "'bounce design' may have a contact that does; the nearest: solref" in reason
     same = asked(0.5, "mujoco", {"solref": "-1e4 -50"}, "1 ms")
@@ -90,8 +90,8 @@ def test_a_least_change_keeps_the_tolerance_if_need_be_at_a_shorter_step():
 
 def test_steps_that_damp_too_much_are_named_with_the_most():
     spring = {"contactStiffness": 1e5, "contactDamping": 30, "contactProcessingThreshold": 0}
-    found = asked(0.8, "pybullet", spring, "1/240", body={"radius": "5 cm"})
-    reason = "; ".join(found.warnings)
+    diagnosis = asked(0.8, "pybullet", spring, "1/240", body={"radius": "5 cm"})
+    reason = "; ".join(diagnosis.warnings)
     most = asked(None, "pybullet", {**spring, "contactDamping": 0}, "1/240").outcome.restitution[1]
     assert f"contactDamping = 0 at 4.17 ms gives r = {most:.3f}" in reason
 
@@ -100,20 +100,20 @@ def test_steps_that_damp_too_much_are_named_with_the_most():
 def test_the_spring_of_several_points_of_mujoco_is_the_one_that_acts(share):
     """Four points of 20 kN/m were called 80 kN/m at every impedance."""
     solref = {"solref": "-20000 -1", "solimp": f"{share} {share} 0.001"}
-    found = asked(None, "mujoco", solref, "20 us", body={"points": 4, "speed": "5 m/s"})
-    acts = found.outcome.force[1] / found.outcome.depth[1]
-    assert found.numbers["stiffness"] == pytest.approx(acts, rel=0.03)
+    diagnosis = asked(None, "mujoco", solref, "20 us", body={"points": 4, "speed": "5 m/s"})
+    acts = diagnosis.outcome.force[1] / diagnosis.outcome.depth[1]
+    assert diagnosis.numbers["stiffness"] == pytest.approx(acts, rel=0.03)
     # A damper that is this weak has r = 1 - πζ.
-    assert found.numbers["free"] == pytest.approx(
-        1 - math.pi * found.numbers["damping_ratio"], abs=2e-3
+    assert diagnosis.numbers["free"] == pytest.approx(
+        1 - math.pi * diagnosis.numbers["damping_ratio"], abs=2e-3
     )
 
 
 def test_the_defaults_of_mujoco_do_not_bounce():
-    found = asked(None, "mujoco", None, "2 ms")
-    assert found.outcome.restitution[2] < 0.05
-    assert found.numbers["damping_ratio"] == pytest.approx(1.0)
-    assert any("without oscillation" in reason for reason in found.warnings)
+    diagnosis = asked(None, "mujoco", None, "2 ms")
+    assert diagnosis.outcome.restitution[2] < 0.05
+    assert diagnosis.numbers["damping_ratio"] == pytest.approx(1.0)
+    assert any("without oscillation" in reason for reason in diagnosis.warnings)
 
 
 def test_vectors_are_read_as_they_are_copied():
@@ -126,18 +126,18 @@ def test_vectors_are_read_as_they_are_copied():
 
 
 def test_the_defaults_of_newton_are_critical_damping_in_its_mujoco_solver():
-    found = diagnose(Bounce(mass="2 kg"), "newton-mujoco", None, "1 ms")
-    assert found.numbers["damping_ratio"] == pytest.approx(1)
-    assert "the defaults ke = 2500, kd = 100" in found.explained
+    diagnosis = diagnose(Bounce(mass="2 kg"), "newton-mujoco", None, "1 ms")
+    assert diagnosis.numbers["damping_ratio"] == pytest.approx(1)
+    assert "the defaults ke = 2500, kd = 100" in diagnosis.explained
 
 
 @pytest.mark.parametrize(("ke", "rest"), [(2500, 0.367e-3), (1e4, 0.108e-3), (1e5, 0.011e-3)])
 def test_the_mujoco_solver_of_newton_has_the_impedance_of_mujoco(ke, rest):
     """Measured with Newton 1.8.0. It was taken as 1e-4, and the depth as 9 times larger."""
     numbers = {"ke": ke, "kd": 20}
-    found = asked(None, "newton-mujoco", numbers, "1 ms")
+    diagnosis = asked(None, "newton-mujoco", numbers, "1 ms")
     # The last measured digit is a micrometre.
-    assert found.outcome.rest == pytest.approx(rest, abs=0.6e-6)
+    assert diagnosis.outcome.rest == pytest.approx(rest, abs=0.6e-6)
     low = asked(None, "newton-mujoco", numbers | {"solimp": "1e-4 1e-4 0.001"}, "1 ms")
     assert low.outcome.rest == pytest.approx(9.80665 / ke, rel=1e-3)
 
@@ -156,9 +156,9 @@ def test_what_a_row_takes_as_given_is_said():
 
 def test_a_damper_that_is_far_too_strong_stops_the_body():
     """Exchanged, kn and gamma_n had r = 24754, with steps that were too long for it."""
-    found = asked(None, "lammps", {"kn": 50, "gamma_n": 1e5}, "10 us")
-    assert found.outcome.restitution[2] < 0.05 and found.numbers["limit"] < 1e-3
-    assert any("without oscillation" in reason for reason in found.warnings)
+    diagnosis = asked(None, "lammps", {"kn": 50, "gamma_n": 1e5}, "10 us")
+    assert diagnosis.outcome.restitution[2] < 0.05 and diagnosis.numbers["limit"] < 1e-3
+    assert any("without oscillation" in reason for reason in diagnosis.warnings)
     # A spring that takes back nearly nothing of the penetration; 0 was a traceback.
     weak = asked(None, "ode", {"soft_erp": 1e-9, "soft_cfm": 1e-5}, "1 ms")
     assert weak.outcome.restitution[2] < 1e-3
@@ -166,19 +166,19 @@ def test_a_damper_that_is_far_too_strong_stops_the_body():
 
 def test_a_time_constant_is_raised_to_two_steps():
     """It was sent to check its units, where MuJoCo takes 0.004 s."""
-    found = asked(None, "mujoco", {"solref": "1e-7 1"}, "2 ms")
-    assert any("1e-07 s to 0.004 s" in reason for reason in found.warnings)
+    diagnosis = asked(None, "mujoco", {"solref": "1e-7 1"}, "2 ms")
+    assert any("1e-07 s to 0.004 s" in reason for reason in diagnosis.warnings)
     same = asked(None, "mujoco", {"solref": "0.004 1"}, "2 ms")
-    assert found.outcome == same.outcome
+    assert diagnosis.outcome == same.outcome
     off = asked(None, "mujoco", {"solref": "0.001 0.1", "refsafe": 0}, "2 ms")
     assert "unstable" in off.warnings[0]
 
 
 def test_numbers_that_were_multiplied_by_the_mass_are_recognized():
     """MuJoCo discussion 3404: 0.75 was wanted, and 0.820 came."""
-    found = asked(0.75, "mujoco", {"solref": "-284244 -68.8"}, "20 us", body={"mass": "0.5 kg"})
-    assert found.outcome.restitution[1] == pytest.approx(0.823, abs=0.002)
-    assert any("per unit of mass" in reason for reason in found.warnings)
+    diagnosis = asked(0.75, "mujoco", {"solref": "-284244 -68.8"}, "20 us", body={"mass": "0.5 kg"})
+    assert diagnosis.outcome.restitution[1] == pytest.approx(0.823, abs=0.002)
+    assert any("per unit of mass" in reason for reason in diagnosis.warnings)
 
 
 def test_a_damping_by_the_formula_of_a_damper_that_pulls_is_recognized():
@@ -196,21 +196,21 @@ def test_what_is_assumed_of_another_body_is_said():
     given = {"point_contact_stiffness": 1e5, "relaxation_time": 1e-3}
     ball = Bounce(mass=1, radius=0.1, restitution=0.3)
     other = {"point_contact_stiffness": 1e6}
-    found = diagnose(ball, "drake-sap", given, "1 ms", other=other).explained
-    assert "of the other body the defaults relaxation_time = 0.1" in found
+    explained = diagnose(ball, "drake-sap", given, "1 ms", other=other).explained
+    assert "of the other body the defaults relaxation_time = 0.1" in explained
 
 
 def test_an_r_that_is_kept_is_said_so():
-    found = asked(0.8, "ode", {"bounce": 0.8}, "1 ms")
-    assert found.is_kept and "is wanted" not in found.result
+    diagnosis = asked(0.8, "ode", {"bounce": 0.8}, "1 ms")
+    assert diagnosis.is_kept and "is wanted" not in diagnosis.result
 
 
 def test_a_restitution_by_number_is_that_of_pybullet():
     """It was 0.496 ± 0.503 with any restitution. 400 drops of a ball of steel in PyBullet 3.2.7."""
     ball = Bounce(mass="1 kg")
-    found = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240")
-    assert found.outcome.restitution == pytest.approx((0.730, 0.814, 0.850), abs=0.003)
-    assert "linearDamping = 0.04 lowers r" in str(found)
+    diagnosis = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240")
+    assert diagnosis.outcome.restitution == pytest.approx((0.730, 0.814, 0.850), abs=0.003)
+    assert "linearDamping = 0.04 lowers r" in str(diagnosis)
     half = diagnose(ball, "pybullet", {"restitution": 0.5}, "1/240")
     assert half.outcome.restitution == pytest.approx((0.196, 0.269, 0.297), abs=0.003)
     assert diagnose(ball, "pybullet", None, "1/240").outcome.restitution == (0, 0, 0)
@@ -232,16 +232,16 @@ def test_a_body_that_each_step_of_gravity_throws_back_hops_for_ever(engine, numb
     """In the engines a ball of 1 kg, 0.1 m, hopped for ever, by 2 mm in PyBullet and by 8 mm in
     PhysX; elsewhere it lay still.
     """
-    found = asked(None, engine, numbers, step, body={"gravity": 9.80665})
-    assert hops == ("it may hop for ever" in str(found))
+    diagnosis = asked(None, engine, numbers, step, body={"gravity": 9.80665})
+    assert hops == ("it may hop for ever" in str(diagnosis))
 
 
 def test_a_body_that_is_lost_has_no_restitution():
     """A grain that was lost through a wall of LAMMPS had r = 0.978 in the first line."""
     body = dict(mass="50 g", radius="30 mm")
-    found = asked(0.8, "lammps", {"kn": 1000, "gamma_n": 5}, "1 ms", body=body)
-    assert "lost, because lammps loses a body that sinks more than 30 mm" in found.result
-    assert "r =" not in found.result and found.change is None
+    diagnosis = asked(0.8, "lammps", {"kn": 1000, "gamma_n": 5}, "1 ms", body=body)
+    assert "lost, because lammps loses a body that sinks more than 30 mm" in diagnosis.result
+    assert "r =" not in diagnosis.result and diagnosis.change is None
 
 
 def test_a_depth_at_rest_that_the_engine_does_not_resolve_is_none():
@@ -250,15 +250,15 @@ def test_a_depth_at_rest_that_the_engine_does_not_resolve_is_none():
     """
     damped = {"compliantContactDamping": 20.0, "restitutionCombineMode": "multiply"}
     for one, other, measured in ((200, 300, 163.457e-6), (2e4, 4e4, None)):
-        found = asked(
+        diagnosis = asked(
             None,
             "physx",
             {**damped, "compliantContactStiffness": one},
             "1 ms",
             other={**damped, "compliantContactStiffness": other},
         )
-        assert ("At rest" not in found.explained) == (measured is None)
-        assert measured is None or found.outcome.rest == pytest.approx(measured, rel=2e-3)
+        assert ("At rest" not in diagnosis.explained) == (measured is None)
+        assert measured is None or diagnosis.outcome.rest == pytest.approx(measured, rel=2e-3)
     # A design for so slow a body that the spring is as stiff.
     slow = Bounce(**KILO, restitution=0.8, speed="1 cm/s", stiffness="1 GN/m")
     for engine in ("physx", "newton"):
@@ -322,10 +322,10 @@ def test_engines_bounce_as_diagnosed(engine, numbers, step, measured):
 
 def test_a_number_of_gazebo_is_that_of_ode_with_the_least_of_both_bodies():
     one = {"restitution_coefficient": 0.9, "threshold": 0.1, "max_vel": 1000, "kd": 1e12}
-    found = asked(0.7, "gazebo", one, "1 ms", other={"restitution_coefficient": 0.8})
-    assert found.outcome.restitution[1] == pytest.approx(0.8, abs=0.002)
-    assert next(iter(found.change.parameters)) == "restitution_coefficient"
-    assert next(iter(found.change.parameters.values())) == pytest.approx(0.7, abs=0.002)
+    diagnosis = asked(0.7, "gazebo", one, "1 ms", other={"restitution_coefficient": 0.8})
+    assert diagnosis.outcome.restitution[1] == pytest.approx(0.8, abs=0.002)
+    assert next(iter(diagnosis.change.parameters)) == "restitution_coefficient"
+    assert next(iter(diagnosis.change.parameters.values())) == pytest.approx(0.7, abs=0.002)
     # The threshold of the defaults, 10⁵ m/s, lets nothing bounce.
     alone = asked(None, "gazebo", {"restitution_coefficient": 0.9}, "1 ms").outcome
     assert alone.restitution[2] < 1e-3
@@ -336,10 +336,10 @@ def test_max_vel_of_gazebo_caps_every_rebound_and_not_the_position():
 
     At rest the ODE of Gazebo 11.10.2 has a depth of 0.8807 mm, and smooths forces by 1 %.
     """
-    found = asked(None, "gazebo", {"kp": 2e5, "kd": 5}, "1 ms")
-    assert found.outcome.restitution[2] < 0.01
-    assert "max_vel caps the rebound" in str(found)
-    assert found.outcome.rest == pytest.approx(0.8807e-3, rel=0.012)
+    diagnosis = asked(None, "gazebo", {"kp": 2e5, "kd": 5}, "1 ms")
+    assert diagnosis.outcome.restitution[2] < 0.01
+    assert "max_vel caps the rebound" in str(diagnosis)
+    assert diagnosis.outcome.rest == pytest.approx(0.8807e-3, rel=0.012)
     lifted = asked(None, "gazebo", {"kp": 2e5, "kd": 5, "max_vel": 1000}, "1 ms")
     assert lifted.outcome.restitution[1] > 0.5 and "caps" not in str(lifted)
     # A fixed table has no body in ODE, and none of its own max_vel.
@@ -362,19 +362,19 @@ def test_restitutions_of_physx_are_combined_by_the_later_mode(modes, expected):
         for e, mode in zip((0.8, 0.4), modes, strict=True)
     )
     # In short steps r is the number.
-    found = asked(None, "physx", one, "20 us", other=other)
-    assert found.outcome.restitution[1] == pytest.approx(expected, abs=1e-3)
+    diagnosis = asked(None, "physx", one, "20 us", other=other)
+    assert diagnosis.outcome.restitution[1] == pytest.approx(expected, abs=1e-3)
 
 
 def test_the_linear_damping_of_pybullet_is_in_the_answer_with_its_effect():
     """Diagnosed were 0.836, and PyBullet had 0.794 to 0.798."""
     spring = {"contactStiffness": 1e4, "contactDamping": 1.5}
-    found = diagnose(Bounce(mass="1 kg"), "pybullet", spring, "1 ms")
-    low, mean, high = found.outcome.restitution
+    diagnosis = diagnose(Bounce(mass="1 kg"), "pybullet", spring, "1 ms")
+    low, mean, high = diagnosis.outcome.restitution
     assert low < 0.794 and high > 0.798
     still = diagnose(Bounce(mass="1 kg"), "pybullet", {**spring, "linearDamping": 0}, "1 ms")
     without = still.outcome.restitution[1]
-    assert f"linearDamping = 0.04 lowers r from {without:.3f} to {mean:.3f}" in repr(found)
+    assert f"linearDamping = 0.04 lowers r from {without:.3f} to {mean:.3f}" in repr(diagnosis)
     assert not any("linearDamping" in reason for reason in still.warnings)
 
 
@@ -397,12 +397,12 @@ def test_pybullet_finds_a_ball_ahead_of_a_table_and_boxes_when_they_touch(
 ):
     """Drops of PyBullet 3.2.7 from 1 m; all were found ahead."""
     ball = Bounce(mass=1, radius=radius, drop_height=1, **more)
-    found = diagnose(ball, "pybullet", parameters, step)
-    low, mean, high = found.outcome.restitution
+    diagnosis = diagnose(ball, "pybullet", parameters, step)
+    low, mean, high = diagnosis.outcome.restitution
     # The diagnosis is for neighbouring contacts as well.
     assert low <= measured[0] and measured[2] <= high
     assert mean == pytest.approx(measured[1], abs=2e-3)
-    assert ("sees the surface" in str(found)) == (not more)
+    assert ("sees the surface" in str(diagnosis)) == (not more)
 
 
 def test_a_diagnosis_says_what_was_given_and_what_was_assumed():
@@ -420,7 +420,7 @@ def test_a_diagnosis_says_what_was_given_and_what_was_assumed():
 
 def test_one_body_with_a_spring_rests_by_the_spring_of_its_points():
     """Bullet issue 2515: one body set, and 24.5 mm at rest."""
-    found = asked(
+    diagnosis = asked(
         None,
         "pybullet",
         {"contactStiffness": 100, "contactDamping": 1},
@@ -428,7 +428,7 @@ def test_one_body_with_a_spring_rests_by_the_spring_of_its_points():
         other={},
         body={"points": 4},
     )
-    assert found.outcome.rest == pytest.approx(24.5e-3, abs=1e-4)
+    assert diagnosis.outcome.rest == pytest.approx(24.5e-3, abs=1e-4)
     both = asked(None, "pybullet", {"contactStiffness": 100, "contactDamping": 1}, "1/240")
     assert both.outcome.rest == pytest.approx(196e-3, abs=1e-3)
 
@@ -440,8 +440,8 @@ def test_parameters_may_have_units():
         "contactSlop": "1 mm",
     }
     plain = {"contactStiffness": 2e4, "contactDamping": 10, "contactSlop": 1e-3}
-    found = asked(None, "pybullet", with_units, "1 ms")
-    assert found.parameters.items() >= plain.items()
+    diagnosis = asked(None, "pybullet", with_units, "1 ms")
+    assert diagnosis.parameters.items() >= plain.items()
 
 
 @pytest.mark.parametrize("rule", [SERIES, SUM, MEAN, PRODUCT, PAIR], ids=lambda rule: rule.text)
@@ -452,10 +452,10 @@ def test_a_rule_and_its_inverse_agree(rule):
 def test_two_bodies_may_have_two_materials():
     one = {"point_contact_stiffness": 1e5, "relaxation_time": 0.001}
     other = {"point_contact_stiffness": 3e5, "relaxation_time": 0.002}
-    found = asked(None, "drake-sap", one, "0.1 ms", other=other)
-    assert found.numbers["stiffness"] == pytest.approx(7.5e4)
+    diagnosis = asked(None, "drake-sap", one, "0.1 ms", other=other)
+    assert diagnosis.numbers["stiffness"] == pytest.approx(7.5e4)
     # c = k τ with the sum of both times.
-    assert found.numbers["damping_ratio"] == pytest.approx(
+    assert diagnosis.numbers["damping_ratio"] == pytest.approx(
         0.003 * 7.5e4 / (2 * 7.5e4**0.5), rel=1e-6
     )
 
@@ -526,11 +526,11 @@ def test_an_undamped_contact_has_the_limit_one_in_every_engine():
 
 def test_what_changes_r_is_named_with_r_without_it():
     """ODE's soft_cfm beside a bounce of 0.9, and Genesis' time constant that it raises."""
-    found = asked(None, "ode", {"bounce": 0.9, "soft_cfm": 1e-3}, "10 ms")
+    diagnosis = asked(None, "ode", {"bounce": 0.9, "soft_cfm": 1e-3}, "10 ms")
     hard = asked(None, "ode", {"bounce": 0.9}, "10 ms").outcome.restitution[1]
-    r = found.outcome.restitution[1]
+    r = diagnosis.outcome.restitution[1]
     said = f"soft_cfm = 0.001 lowers r from {hard:.3f} to {r:.3f}; 1e-10 if r needs it"
-    assert said in found.warnings
+    assert said in diagnosis.warnings
     raised = asked(None, "genesis", {"timeconst": 1e-5, "dampratio": 1}, "1 ms")
     assert any("1e-05 s to 0.002 s, two steps" in reason for reason in raised.warnings)
 
@@ -539,9 +539,9 @@ def test_an_engine_without_numbers_per_unit_of_mass_has_no_hint_of_them():
     """The steps of Drake give the wanted r here, which short steps would not."""
     spring = {"point_contact_stiffness": 1e5, "relaxation_time": 1e-5}
     r = asked(None, "drake-sap", spring, "1 ms", body={"mass": "2 kg"}).outcome.restitution[1]
-    found = asked(r, "drake-sap", spring, "1 ms", body={"mass": "2 kg"})
-    assert abs(found.numbers["free"] - r) > 0.02
-    assert not any("per unit of mass" in reason for reason in found.warnings)
+    diagnosis = asked(r, "drake-sap", spring, "1 ms", body={"mass": "2 kg"})
+    assert abs(diagnosis.numbers["free"] - r) > 0.02
+    assert not any("per unit of mass" in reason for reason in diagnosis.warnings)
 
 
 @pytest.mark.parametrize(
@@ -576,28 +576,28 @@ def test_compliant_materials_of_physx_are_combined_as_negative_restitutions(
     """Measured with ovphysx 0.7.0. All were averaged, and a rigid table halved the stiffness."""
     one = {"compliantContactStiffness": 2e4, "compliantContactDamping": 30}
     ball = Bounce(mass="1 kg", radius="10 cm", drop_height="0.5 m")
-    found = diagnose(ball, "physx", one, "1 ms", other=other)
-    low, _, high = found.outcome.restitution
+    diagnosis = diagnose(ball, "physx", one, "1 ms", other=other)
+    low, _, high = diagnosis.outcome.restitution
     assert low < range_of_r[0] and range_of_r[1] < high and high - low < 0.035
-    assert rest is None or found.outcome.rest == pytest.approx(rest, rel=2e-3)
+    assert rest is None or diagnosis.outcome.rest == pytest.approx(rest, rel=2e-3)
 
 
 def test_newton_averages_time_constants_for_its_mujoco_solver():
     """Measured with Newton 1.8.0: 22.3 to 23.5 mm. ke and kd were averaged: 16.7 mm."""
     ball = Bounce(mass="0.3 kg", radius="5 cm", drop_height="0.5 m")
     other = {"ke": 8000, "kd": 90}
-    found = diagnose(ball, "newton-mujoco", {"ke": 3e4, "kd": 40}, "1 ms", other=other)
-    assert found.outcome.depth == pytest.approx((22.25e-3, 23.55e-3), rel=5e-3)
+    diagnosis = diagnose(ball, "newton-mujoco", {"ke": 3e4, "kd": 40}, "1 ms", other=other)
+    assert diagnosis.outcome.depth == pytest.approx((22.25e-3, 23.55e-3), rel=5e-3)
 
 
 def test_mujoco_has_a_least_product_of_the_times_of_solref():
     """Measured with MuJoCo 4.0.0: 0.618 to 0.649, at rest 1 µm. It was 0.726 to 0.768, 0.39 µm."""
     ball = Bounce(mass="50 g", radius="1 cm", drop_height="0.5 m")
     numbers = {"solref": "0.002 0.1", "solimp": "1e-4 1e-4 0.001"}
-    found = diagnose(ball, "mujoco", numbers, "50 us")
-    low, _, high = found.outcome.restitution
+    diagnosis = diagnose(ball, "mujoco", numbers, "50 us")
+    low, _, high = diagnosis.outcome.restitution
     assert low == pytest.approx(0.616, abs=2e-3) and high == pytest.approx(0.652, abs=2e-3)
-    assert found.outcome.rest == pytest.approx(0.981e-6, rel=2e-3)
+    assert diagnosis.outcome.rest == pytest.approx(0.981e-6, rel=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -618,12 +618,12 @@ def test_friction_changes_r_by_the_edges_of_its_pyramid(numbers, points, measure
     """
     given = {"solref": "0.02 0.2", "solimp": "0.015 1 0.022", **numbers}
     ball = Bounce(mass=1, radius=0.1, drop_height=0.5, points=points)
-    found = diagnose(ball, "mujoco", given, "2 ms")
-    low, _, high = found.outcome.restitution
+    diagnosis = diagnose(ball, "mujoco", given, "2 ms")
+    low, _, high = diagnosis.outcome.restitution
     # The range is also that of contacts which differ by half a percent.
     assert low - 5e-4 <= measured[0] <= low + 0.012 and high - 0.008 <= measured[1] <= high + 5e-4
-    assert "with the pyramidal cone and no friction" in repr(found)
-    assert points > 1 or "no friction, and 0.68" in repr(found)
+    assert "with the pyramidal cone and no friction" in repr(diagnosis)
+    assert points > 1 or "no friction, and 0.68" in repr(diagnosis)
 
 
 def test_friction_is_an_option_and_a_parameter_of_mujoco():
@@ -639,9 +639,9 @@ def test_friction_is_an_option_and_a_parameter_of_mujoco():
 
 def test_a_damper_that_is_too_strong_for_explicit_steps_has_no_r_above_one():
     """Drake's default said "the step lowers r from 5.244 to 0.000"."""
-    found = diagnose(Bounce(mass=1, radius=0.1), "drake", None, "1 ms")
-    assert found.numbers["limit"] < 0.01 and found.outcome.restitution[2] < 0.01
-    assert "lowers r" not in repr(found)
+    diagnosis = diagnose(Bounce(mass=1, radius=0.1), "drake", None, "1 ms")
+    assert diagnosis.numbers["limit"] < 0.01 and diagnosis.outcome.restitution[2] < 0.01
+    assert "lowers r" not in repr(diagnosis)
 
 
 @pytest.mark.parametrize(
@@ -653,8 +653,8 @@ def test_a_damper_that_is_too_strong_for_explicit_steps_has_no_r_above_one():
 )
 def test_a_solimp_out_of_its_range_is_said_to_be(solimp, said):
     ball = Bounce(mass=1, radius=0.1)
-    found = diagnose(ball, "mujoco", {"solref": "-2e4 -30", "solimp": solimp}, "2 ms")
-    assert said in found.explained
+    diagnosis = diagnose(ball, "mujoco", {"solref": "-2e4 -30", "solimp": solimp}, "2 ms")
+    assert said in diagnosis.explained
     plain = diagnose(ball, "mujoco", {"solref": "-2e4 -30"}, "2 ms")
     assert "solimp = " not in " ".join(plain.warnings) and "depth in m" not in plain.explained
 

@@ -47,14 +47,14 @@ def test_a_false_number_on_a_page_is_seen(false):
         agrees("r = 0.8964", f"r = {false}")
 
 
-@pytest.mark.parametrize(("page", "command", "shown"), SHOWN["bounce"], ids=lambda each: each[:30])
+@pytest.mark.parametrize(("page", "command", "shown"), SHOWN["bounce"], ids=lambda text: text[:30])
 def test_a_page_shows_what_the_command_prints(typed, page, command, shown):
     status, out, err = typed(command)
     assert (status, err) == (0, "")
     agrees(out, shown)
 
 
-@pytest.mark.parametrize(("page", "script", "shown"), SHOWN["python"], ids=lambda each: each[:30])
+@pytest.mark.parametrize(("page", "script", "shown"), SHOWN["python"], ids=lambda text: text[:30])
 def test_a_page_shows_what_the_script_prints(capsys, page, script, shown):
     """A page had 2.5 µs where the script printed 4.0 µs."""
     runpy.run_path(str(ROOT / script))
@@ -63,9 +63,9 @@ def test_a_page_shows_what_the_script_prints(capsys, page, script, shown):
 
 def test_the_answers_of_the_readme_are_short():
     """MuJoCo's had 16 lines and 207 words."""
-    shown = [each for page, _, each in SHOWN["bounce"] if page == "README.md"]
+    shown = [text for page, _, text in SHOWN["bounce"] if page == "README.md"]
     assert len(shown) == 3
-    assert all(each.count("\n") <= 10 and len(each.split()) < 80 for each in shown)
+    assert all(text.count("\n") <= 10 and len(text.split()) < 80 for text in shown)
 
 
 def test_the_examples_in_python():
@@ -73,7 +73,7 @@ def test_the_examples_in_python():
     assert failed == 0 and tried > 10
 
 
-@pytest.mark.parametrize("module", [questions, rebounds, units], ids=lambda each: each.__name__)
+@pytest.mark.parametrize("module", [questions, rebounds, units], ids=lambda module: module.__name__)
 def test_the_examples_of_docstrings(module):
     failed, tried = doctest.testmod(module)
     assert failed == 0 and tried > 0

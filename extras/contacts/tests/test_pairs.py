@@ -143,29 +143,33 @@ def test_what_is_written_for_a_ball_is_true(name):
         # A ball rises to the skin of Box2D 2, however low r is.
         height = fall + 2 * (BY_NUMBER[name].skin if name in BY_NUMBER else 0)
         ball = dict(mass=mass, radius=radius, drop_height=height, gravity=G)
-        found = design(Bounce(**ball, restitution=WANTED), name, STEP)
+        answer = design(Bounce(**ball, restitution=WANTED), name, STEP)
         if (name, height) in WITHOUT:
-            assert not found.snippet and not found.also
+            assert not answer.snippet and not answer.also
             continue
-        found = next(each for each in (found, *found.also) if each.snippet)
-        low, mean, high = found.outcome.restitution
+        answer = next(candidate for candidate in (answer, *answer.also) if candidate.snippet)
+        low, mean, high = answer.outcome.restitution
         assert 0 <= low <= mean <= high <= 1.05
-        assert found.is_kept or (name in TURNS and radius < 0.1)
-        assert max(found.outcome.depth, default=0.0) <= radius
-        again = diagnose(Bounce(**ball), name, found.parameters, found.time_step)
+        assert answer.is_kept or (name in TURNS and radius < 0.1)
+        assert max(answer.outcome.depth, default=0.0) <= radius
+        again = diagnose(Bounce(**ball), name, answer.parameters, answer.time_step)
         assert again.outcome.restitution == pytest.approx((low, mean, high), abs=1e-3)
         if name in OWN:
-            way = math.sqrt(2 * G * height) * found.time_step
+            way = math.sqrt(2 * G * height) * answer.time_step
             heights = [height + way * (place / 5 - 0.5) for place in range(5)]
-            of = found.parameters, mass, found.time_step
-            each = [dropped(OWN[name], *of, one) for one in heights]
+            of = answer.parameters, mass, answer.time_step
+            restitutions = [dropped(OWN[name], *of, one) for one in heights]
             # r is printed with three digits, and instants are nine for springs.
-            assert low - 2e-3 <= min(each) and max(each) <= high + 2e-3, (mass, radius, height)
+            assert low - 2e-3 <= min(restitutions) and max(restitutions) <= high + 2e-3, (
+                mass,
+                radius,
+                height,
+            )
             # Five instants are a fifth of the range apart.
-            assert sum(each) / 5 == pytest.approx(mean, abs=max((high - low) / 5, 1e-3))
+            assert sum(restitutions) / 5 == pytest.approx(mean, abs=max((high - low) / 5, 1e-3))
         if name in BY_NUMBER and not BY_NUMBER[name].springs:
             other = Bounce(**{**ball, "mass": 1e-3 / mass * 1e3})
-            same = diagnose(other, name, found.parameters, found.time_step).outcome.restitution
+            same = diagnose(other, name, answer.parameters, answer.time_step).outcome.restitution
             assert same == pytest.approx(again.outcome.restitution, abs=1e-3)
 
 

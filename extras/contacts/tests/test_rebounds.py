@@ -51,7 +51,7 @@ def by_rule(line):
     # A circle of matter-js is made with a side below if a quarter of their even number is whole.
     turn = {"turn": float((sides + sides % 2) % 4 == 0)}
     drop = float(line["drop in m"])
-    found = []
+    ranges = []
     for either in [turn] if engine.pixels else engine.either:
         at = Fall(
             number=float(line["r"]),
@@ -62,8 +62,8 @@ def by_rule(line):
             settings={**engine.settings, "pixels": engine.pixels, **either},
         )
         r = by_height(engine, at, drop)
-        found.append([r.mean(), r.min(), r.max()])
-    return np.array(found)
+        ranges.append([r.mean(), r.min(), r.max()])
+    return np.array(ranges)
 
 
 LINES = recorded()
@@ -75,22 +75,22 @@ def distances(name):
     lines = [line for line in LINES if line["engine"] == name]
     measured = [[float(line[key]) for key in ("mean", "least", "greatest")] for line in lines]
     rules = [by_rule(line) for line in lines]
-    below = np.array([each.min(axis=0) for each in rules]) - measured
-    above = measured - np.array([each.max(axis=0) for each in rules])
+    below = np.array([rule.min(axis=0) for rule in rules]) - measured
+    above = measured - np.array([rule.max(axis=0) for rule in rules])
     return np.maximum(np.maximum(below, above), 0.0).max(axis=1)
 
 
 def table():
     """Return the part of the page: how far the rules are from the drops."""
     apart = {name: distances(name) for name in dict.fromkeys(line["engine"] for line in LINES)}
-    exact = [name for name, each in apart.items() if each.max() < EXACT]
+    exact = [name for name, gaps in apart.items() if gaps.max() < EXACT]
     return "\n".join(
         [
             "| engine | drops | within 0.0001 | largest distance |",
             "| --- | --- | --- | --- |",
             *(
-                f"| `{name}` | {len(each)} | {np.sum(each < EXACT)} | {each.max():.4f} |"
-                for name, each in apart.items()
+                f"| `{name}` | {len(gaps)} | {np.sum(gaps < EXACT)} | {gaps.max():.4f} |"
+                for name, gaps in apart.items()
                 if name not in exact
             ),
             f"\nWithin 0.0001 are all {sum(len(apart[name]) for name in exact)} drops of "
@@ -123,13 +123,13 @@ BALL = dict(drop_height="1 m", restitution=0.8)
 def test_the_number_that_is_written_gives_what_is_said(name):
     # In matter-js r of a small ball depends on how it is turned.
     ball = Bounce(**BALL, radius=0.3)
-    found = design(ball, name, "1/240")
-    again = diagnose(ball, name, found.parameters, "1/240")
-    assert again.outcome.restitution == pytest.approx(found.outcome.restitution, abs=1e-3)
-    assert found.outcome.restitution[1] == pytest.approx(0.8, abs=0.003)
-    assert bool(found.also) != found.is_kept
-    number = found.parameters[BY_NUMBER[name].parameter]
-    assert f"{number:.4g}" in found.snippet
+    answer = design(ball, name, "1/240")
+    again = diagnose(ball, name, answer.parameters, "1/240")
+    assert again.outcome.restitution == pytest.approx(answer.outcome.restitution, abs=1e-3)
+    assert answer.outcome.restitution[1] == pytest.approx(0.8, abs=0.003)
+    assert bool(answer.also) != answer.is_kept
+    number = answer.parameters[BY_NUMBER[name].parameter]
+    assert f"{number:.4g}" in answer.snippet
     # 0.0001 was written, with which some instants bounce, and 0f is no number of C++.
     none = (
         design(Bounce(drop_height="1 m", restitution=0), name, "1/240")
@@ -159,12 +159,12 @@ def test_the_defaults_of_pybullet_find_a_ball_ahead(step, number, measured):
 def test_a_threshold_is_in_the_way():
     """Unity's default of 2 m/s stops a ball that falls for 15 cm; the answer lowers it."""
     low = Bounce(drop_height="15 cm", restitution=0.8)
-    found = diagnose(low, "unity", {"bounciness": 0.8}, "1/50")
-    assert found.outcome.restitution[1] < 0.1
-    assert found.warnings[0].startswith(
+    diagnosis = diagnose(low, "unity", {"bounciness": 0.8}, "1/50")
+    assert diagnosis.outcome.restitution[1] < 0.1
+    assert diagnosis.warnings[0].startswith(
         "it does not bounce: 1.72 m/s is not above the threshold of 2 m/s"
     )
-    assert "Physics.bounceThreshold = 0." in str(found)
+    assert "Physics.bounceThreshold = 0." in str(diagnosis)
     lowered = diagnose(low, "unity", {"restitution": 0.8, "bounceThreshold": 0.4}, "1/50")
     assert lowered.outcome.restitution[1] > 0.8
 
@@ -222,9 +222,9 @@ def test_the_threshold_of_matter_is_in_the_answer(typed):
 def test_names_that_an_answer_prints_can_be_typed(name):
     """ "Physics.bounceThreshold=1.1" was refused, beside a list in which it was."""
     engine = BY_NUMBER[name]
-    for each in {*engine.lines, engine.set_by} - {"", "step", "gravity"}:
-        is_number = engine.names[as_compared(each)] == "number"
-        given = {each: 0.25} | ({} if is_number else {"restitution": 0.25})
+    for printed_name in {*engine.lines, engine.set_by} - {"", "step", "gravity"}:
+        is_number = engine.names[as_compared(printed_name)] == "number"
+        given = {printed_name: 0.25} | ({} if is_number else {"restitution": 0.25})
         assert diagnose(Bounce(**BALL), name, given, "1/240").parameters[engine.parameter] == 0.25
 
 
@@ -236,25 +236,25 @@ def test_names_that_an_answer_prints_can_be_typed(name):
 def test_what_is_pasted_sets_the_time_step(name, given):
     """MuJoCo's default step is 2 ms: there a contact of 0.5 ms threw the ball up."""
     bounce = Bounce(mass="50 g", radius="30 mm", drop_height="2 m", restitution=0.7, **given)
-    found = design(bounce, name, time_step=None if given else "1.25 ms")
-    numbers = [float(each) for each in re.findall(r"\d+\.?\d*(?:e-?\d+)?", found.snippet)]
+    answer = design(bounce, name, time_step=None if given else "1.25 ms")
+    numbers = [float(number) for number in re.findall(r"\d+\.?\d*(?:e-?\d+)?", answer.snippet)]
     # These have steps in a second.
     is_rate = not given and name in ("godot-jolt", "isaac-sim", "matter-js")
-    step = 1 / found.time_step if is_rate else found.time_step
+    step = 1 / answer.time_step if is_rate else answer.time_step
     assert pytest.approx(step, rel=1e-5) in numbers
 
 
 def test_two_bodies_are_combined_as_the_engine_does():
     """Rapier averages: the question of a ball on a ground for which nothing is set."""
     given = {"restitution": 0.8}
-    found = diagnose(Bounce(**BALL), "rapier", given, "1/60", other={})
-    assert found.numbers["number"] == 0.4
+    diagnosis = diagnose(Bounce(**BALL), "rapier", given, "1/60", other={})
+    assert diagnosis.numbers["number"] == 0.4
     jolt = diagnose(Bounce(**BALL), "jolt", given, "1/60", other={"restitution": 0.1})
     assert jolt.numbers["number"] == 0.8
     dart = diagnose(Bounce(**BALL), "dart", given, "1/60", other={"restitution": 0.5})
     assert dart.numbers["number"] == 0.4
     # With 0 on the ground no number of the ball is enough.
-    assert "(of both bodies)" in str(found)
+    assert "(of both bodies)" in str(diagnosis)
 
 
 def test_one_body_has_a_negative_number_where_the_engine_takes_one():
@@ -283,23 +283,25 @@ def test_one_body_has_a_negative_number_where_the_engine_takes_one():
 def test_a_design_for_matter_has_the_pixels_of_a_metre(typed):
     """Pasted into matter-js 0.20.0 it had 0.794 to 0.815."""
     bounce = Bounce(restitution=0.8, drop_height=2, radius=0.4)
-    found = design(bounce, "matter-js", "1/60", pixels=50)
-    given = {**found.parameters, "pixels": 50}
-    assert diagnose(bounce, "matter-js", given, "1/60").outcome == found.outcome
-    r = found.outcome.restitution
+    answer = design(bounce, "matter-js", "1/60", pixels=50)
+    given = {**answer.parameters, "pixels": 50}
+    assert diagnose(bounce, "matter-js", given, "1/60").outcome == answer.outcome
+    r = answer.outcome.restitution
     assert (r.low, r.high) == pytest.approx((0.778, 0.819), abs=2e-3)
     # 50 pixels have 9.80665 m/s²: in 1/ms² and pixels.
-    assert "engine.gravity.scale = 0.000490332;" in found.snippet
+    assert "engine.gravity.scale = 0.000490332;" in answer.snippet
     assert "gravity" not in design(bounce, "matter-js", "1/60").snippet
     said = "design --engine {} --restitution 0.8 --drop-height 2m --radius 0.4m --pixels 50"
-    assert found.snippet in typed(said.format("matter-js"))[1]
+    assert answer.snippet in typed(said.format("matter-js"))[1]
     for name in ("rapier", "mujoco", "generic"):
         assert "is of matter-js" in typed(said.format(name))[2]
 
 
 def test_a_ground_of_0_multiplies_everything_away():
-    found = diagnose(Bounce(**BALL), "gazebo-sim", {"restitution": 0.8}, "1ms", other={})
-    assert found.warnings[0].startswith("nothing bounces: the other body has 0, and the numbers")
+    diagnosis = diagnose(Bounce(**BALL), "gazebo-sim", {"restitution": 0.8}, "1ms", other={})
+    assert diagnosis.warnings[0].startswith(
+        "nothing bounces: the other body has 0, and the numbers"
+    )
 
 
 NO_DAMPING = {"default_linear_damp": 0}
@@ -309,9 +311,9 @@ def test_an_impact_at_the_threshold_does_not_bounce():
     """Godot 4.6 with Jolt: 1 m/s does not bounce off a ceiling, and 2 m/s does."""
     for speed, r in (("1 m/s", 0.0), ("2 m/s", 1.0)):
         ball = Bounce(speed=speed, gravity=0)
-        found = diagnose(ball, "godot-jolt", NO_DAMPING | {"bounce": 1}, "1/60")
-        assert found.outcome.restitution[1] == pytest.approx(r)
-        assert any("not above the threshold of 1 m/s" in note for note in found.warnings) == (
+        diagnosis = diagnose(ball, "godot-jolt", NO_DAMPING | {"bounce": 1}, "1/60")
+        assert diagnosis.outcome.restitution[1] == pytest.approx(r)
+        assert any("not above the threshold of 1 m/s" in note for note in diagnosis.warnings) == (
             r == 0
         )
 
@@ -326,20 +328,20 @@ def test_without_gravity_r_is_the_ratio_of_speeds():
             given |= {key: value for key, value in settings.items() if "Relax" not in key}
         if name == "gazebo":
             given["threshold"] = 0
-        found = diagnose(wall, name, given, "1/240")
+        diagnosis = diagnose(wall, name, given, "1/240")
         # The relaxed spring of cannon-es has 12/13 of 1 + r, and takes the depth back. A ball of
         # matter-js is a polygon.
         tolerance = {"cannon-es": 0.16, "matter-js": 0.09}.get(name, 1e-6)
-        expected = pytest.approx(found.numbers["number"], abs=tolerance)
-        assert found.outcome.restitution[1] == expected, name
+        expected = pytest.approx(diagnosis.numbers["number"], abs=tolerance)
+        assert diagnosis.outcome.restitution[1] == expected, name
 
 
 def test_a_shorter_step_is_named_where_none_keeps_r():
-    found = design(Bounce(drop_height="10 cm", restitution=0.3), "jolt", "1/60")
-    assert not found.is_kept and "Also good: --time-step" in str(found)
+    answer = design(Bounce(drop_height="10 cm", restitution=0.3), "jolt", "1/60")
+    assert not answer.is_kept and "Also good: --time-step" in str(answer)
     # At some instants the ball does not bounce at 1/60 s: the lines are those of the other step.
-    assert found.snippet == "" and found.also[0].snippet in str(found)
-    assert found.also[0].is_kept and found.also[0].time_step < 1 / 60
+    assert answer.snippet == "" and answer.also[0].snippet in str(answer)
+    assert answer.also[0].is_kept and answer.also[0].time_step < 1 / 60
 
 
 def test_the_search_for_a_step_ends_where_r_does_not_depend_on_it(monkeypatch):
@@ -353,8 +355,8 @@ def test_the_search_for_a_step_ends_where_r_does_not_depend_on_it(monkeypatch):
 
     monkeypatch.setattr("bouncing_ball_contacts.rebounds.Case", Counted)
     circle = Bounce(restitution=0.285, radius=0.0191, drop_height=0.0644)
-    found = design(circle, "matter-js", "1/60 s")
-    assert found.snippet and not found.also
+    answer = design(circle, "matter-js", "1/60 s")
+    assert answer.snippet and not answer.also
     # Seven more steps are allowed, and the last ones take longest.
     assert len(steps) < 5
 
@@ -362,16 +364,16 @@ def test_the_search_for_a_step_ends_where_r_does_not_depend_on_it(monkeypatch):
 @pytest.mark.parametrize("name", ["gazebo", "gazebo-sim"])
 def test_an_element_for_gazebo_stands_once_and_has_its_place(name):
     """Gazebo refuses <physics> without a type, and a second <surface> is not read."""
-    found = design(Bounce(mass=0.1, restitution=0.7, drop_height=1, radius=0.25), name, "1/60")
+    answer = design(Bounce(mass=0.1, restitution=0.7, drop_height=1, radius=0.25), name, "1/60")
     builder = ElementTree.TreeBuilder(insert_comments=True)
     both = ElementTree.fromstring(
-        f"<all>{found.snippet}</all>", ElementTree.XMLParser(target=builder)
+        f"<all>{answer.snippet}</all>", ElementTree.XMLParser(target=builder)
     )
     elements, places = list(both)[::2], list(both)[1::2]
-    names = [each.tag for each in elements]
+    names = [element.tag for element in elements]
     assert len(set(names)) == len(names) == len(places)
     assert not {"physics", "surface"} & set(names)
-    assert all(re.match(r" in (<\w+>)+", each.text) for each in places)
+    assert all(re.match(r" in (<\w+>)+", place.text) for place in places)
 
 
 def test_a_ball_at_rest_is_not_followed():
@@ -386,8 +388,8 @@ def test_a_ball_at_rest_is_not_followed():
 def test_a_ball_that_lies_on_its_skin_does_not_bounce(name, number):
     """From 4 cm it lay 10 mm above the surface, which was √(10/40) = 0.5."""
     fall = Bounce(drop_height="4 cm")
-    found = diagnose(fall, name, {"restitution": number}, "1 ms").outcome.restitution
-    assert max(found) == 0
+    restitution = diagnose(fall, name, {"restitution": number}, "1 ms").outcome.restitution
+    assert max(restitution) == 0
     # Faster than the threshold of 1 m/s the number counts, from 10 mm above the floor.
     fast = diagnose(Bounce(drop_height="40 cm"), name, {"restitution": number}, "0.1 ms")
     from_floor = math.sqrt((0.01 + number**2 * 0.39) / 0.4)
@@ -409,8 +411,8 @@ def test_r_is_that_from_the_floor(name, wanted, height, rate, number, least, mos
     """61 drops from heights above the floor in planck 1.4.2 and Box2D 2.4.1, with a radius of 0.1 m
     and the numbers here. They were counted from the skin: 0.479 to 0.637 was 0.389 to 0.576.
     """
-    found = design(Bounce(restitution=wanted, drop_height=height), name, 1 / rate)
-    assert found.outcome.restitution.mean == pytest.approx(wanted, abs=0.01)
+    answer = design(Bounce(restitution=wanted, drop_height=height), name, 1 / rate)
+    assert answer.outcome.restitution.mean == pytest.approx(wanted, abs=0.01)
     # A threshold that is a constant leaves the ball hopping.
     ball = Bounce(drop_height=height)
     low, _, high = diagnose(ball, name, {"restitution": number}, 1 / rate).outcome.restitution
@@ -542,8 +544,8 @@ def test_the_command(typed):
     assert (status, err) == (0, "")
     assert out.startswith("rapier, 16.7 ms: r = 0.797 (0.784 to 0.811)")
     status, out, err = typed(f"{line} --restitution 0.8 --json")
-    found = json.loads(out)
-    low, _, high = found["outcome"]["restitution"]
+    answer = json.loads(out)
+    low, _, high = answer["outcome"]["restitution"]
     assert low < 0.8 < high
     # PhysX has springs as well, and these stay with --engine physx.
     assert "PhysX 5.6.1" in typed(line.replace("rapier", "physx") + " --explain")[1]
@@ -567,10 +569,10 @@ def test_ode_has_two_numbers_of_its_own(typed):
     ball = Bounce(mass=1)
     assert diagnose(ball, "ode", {"kp": "100 N/mm", "kd": 50}, "1 ms").explained == own.rstrip()
     # A design has them beside its numbers.
-    found = design(Bounce(mass=1, restitution=0.5, penetration="5 mm"), "ode")
-    kp, kd = re.search(r"kp = (\S+) N/m and kd = (\S+) N s/m", found.snippet).groups()
-    again = diagnose(ball, "ode", {"kp": kp, "kd": kd}, found.time_step)
-    assert again.outcome.restitution == pytest.approx(found.outcome.restitution, abs=1e-4)
+    answer = design(Bounce(mass=1, restitution=0.5, penetration="5 mm"), "ode")
+    kp, kd = re.search(r"kp = (\S+) N/m and kd = (\S+) N s/m", answer.snippet).groups()
+    again = diagnose(ball, "ode", {"kp": kp, "kd": kd}, answer.time_step)
+    assert again.outcome.restitution == pytest.approx(answer.outcome.restitution, abs=1e-4)
     for given in ({"kp": 1e5}, {"kp": 1e5, "kd": 5, "soft_erp": 0.1}):
         with pytest.raises(Refused, match="give kp and kd, and nothing beside them"):
             diagnose(ball, "ode", given, "1 ms")
@@ -581,13 +583,13 @@ def test_what_was_not_run_says_so_where_it_is_read(name, typed):
     """Five products answered as those that were run."""
     row = BY_NUMBER[name]
     said = f"not run: the rule of {row.borrows}, run in {BY_NUMBER[row.borrows].ran}"
-    found = design(Bounce(**BALL), name, "1/120")
-    assert found.ran == said and str(found).split("\n")[1] == f"! {said}"
+    answer = design(Bounce(**BALL), name, "1/120")
+    assert answer.ran == said and str(answer).split("\n")[1] == f"! {said}"
     listed = typed("engines")[1]
     assert f"\n    {said}\n" in listed[listed.index(f"\n{name}: ", listed.index("by number")) :]
     assert "not run" not in str(design(Bounce(**BALL), row.borrows, "1/120"))
     # Newton's MuJoCo solver has no restitution.
-    assert ("newton-mujoco" in str(found)) == name.startswith("isaac")
+    assert ("newton-mujoco" in str(answer)) == name.startswith("isaac")
 
 
 def test_nothing_to_paste_is_an_exit_status_of_1(typed):
@@ -684,11 +686,11 @@ def test_the_relaxation_of_cannon_is_computed(number, rate, drop, relaxation, me
     """
     given = {"restitution": number, "contactEquationRelaxation": relaxation}
     ball = Bounce(drop_height=drop, radius=0.1)
-    found = diagnose(ball, "cannon-es", given, 1 / rate)
+    diagnosis = diagnose(ball, "cannon-es", given, 1 / rate)
     # 96 instants come nearer to the ends of the range than 24, by a 24th of it at most.
     low, high = measured[0], measured[2]
-    assert found.outcome.restitution == pytest.approx(measured, abs=1e-3 + (high - low) / 24)
-    assert found.parameters.get("contactEquationRelaxation") == relaxation
+    assert diagnosis.outcome.restitution == pytest.approx(measured, abs=1e-3 + (high - low) / 24)
+    assert diagnosis.parameters.get("contactEquationRelaxation") == relaxation
 
 
 @pytest.mark.parametrize(
@@ -714,9 +716,9 @@ def test_a_heavy_ball_of_cannon_sinks(mass, rate, number, measured):
 
 @pytest.mark.parametrize("mass", [1e-3, 1.0, 1e3, 2e4])
 def test_the_mass_does_not_matter_in_a_design_for_cannon(mass):
-    found = design(Bounce(mass=mass, restitution=0.8, radius=0.5), "cannon-es", "1/240")
-    assert found.is_kept and "contactEquationStiffness = 1e+15;" in found.snippet
-    assert found.outcome.restitution.mean == pytest.approx(0.8, abs=1e-3)
+    answer = design(Bounce(mass=mass, restitution=0.8, radius=0.5), "cannon-es", "1/240")
+    assert answer.is_kept and "contactEquationStiffness = 1e+15;" in answer.snippet
+    assert answer.outcome.restitution.mean == pytest.approx(0.8, abs=1e-3)
 
 
 def test_without_a_mass_the_answer_has_the_mass_for_which_it_holds(typed):
@@ -729,8 +731,8 @@ def test_without_a_mass_the_answer_has_the_mass_for_which_it_holds(typed):
 
 @pytest.mark.parametrize("wanted", [0.3, 0.5, 0.8, 0.95])
 def test_a_relaxation_of_cannon_keeps_r(wanted):
-    found = design(Bounce(drop_height="1 m", restitution=wanted), "cannon-es", "1/60")
-    assert found.is_kept and "contactEquationRelaxation" in found.snippet
+    answer = design(Bounce(drop_height="1 m", restitution=wanted), "cannon-es", "1/60")
+    assert answer.is_kept and "contactEquationRelaxation" in answer.snippet
 
 
 @pytest.mark.parametrize(
@@ -747,16 +749,16 @@ def test_where_the_damping_is_in_the_way_the_least_change_is_without(name, wante
     engine = BY_NUMBER[name]
     written = engine.pair.alike(wanted)
     ball = Bounce(drop_height="5 m", restitution=wanted, radius="0.5 m")
-    found = diagnose(ball, name, {engine.parameter: written}, "1/60")
-    assert not found.is_kept and found.change.is_kept
-    assert line in found.change.snippet
+    diagnosis = diagnose(ball, name, {engine.parameter: written}, "1/60")
+    assert not diagnosis.is_kept and diagnosis.change.is_kept
+    assert line in diagnosis.change.snippet
 
 
 def test_a_least_change_is_not_what_was_given():
     given = {"restitution": 1.0, "frictionAir": 0}
     ball = Bounce(drop_height=3.4, restitution=1.0, radius=0.8)
-    found = diagnose(ball, "matter-js", given, "1/60")
-    assert not found.is_kept and found.change is None and found.also[0].is_kept
+    diagnosis = diagnose(ball, "matter-js", given, "1/60")
+    assert not diagnosis.is_kept and diagnosis.change is None and diagnosis.also[0].is_kept
 
 
 def test_a_threshold_of_physx_that_lets_a_ball_hop_for_ever_is_said_so(typed):
@@ -791,10 +793,10 @@ def test_a_ball_that_hops_for_ever_is_said_to(name, number, step, hops):
     """
     engine = BY_NUMBER[name]
     given = {engine.parameter: number}
-    found = diagnose(Bounce(drop_height=1), name, given, step, other={engine.parameter: 1.0})
+    diagnosis = diagnose(Bounce(drop_height=1), name, given, step, other={engine.parameter: 1.0})
     if engine.pair.of(0.0, 1.0):
-        found = diagnose(Bounce(drop_height=1), name, given, step)
-    said = re.findall(r"it may hop for ever, by about ([\d.]+) mm", "\n".join(found.warnings))
+        diagnosis = diagnose(Bounce(drop_height=1), name, given, step)
+    said = re.findall(r"it may hop for ever, by about ([\d.]+) mm", "\n".join(diagnosis.warnings))
     assert bool(said) == bool(hops)
     # Planck moves a ball that it stopped on within the step.
     assert not hops or 0.6 * hops <= float(said[0]) <= 1.25 * hops
@@ -856,7 +858,7 @@ def test_light_and_heavy_balls_bounce_as_in_the_engines():
             drop_height=float(row["height, m"]),
             gravity=G,
         )
-        given = dict(each.split("=") for each in row["written"].split("; "))
+        given = dict(assignment.split("=") for assignment in row["written"].split("; "))
         step = float(row["step, ms"]) / 1000
         low, _, high = diagnose(ball, row["engine"], given, step).outcome.restitution
         least, most = map(float, row["r in the engine"].split(" to "))
@@ -876,8 +878,8 @@ def test_shapes_that_left_the_range_in_an_engine_are_excepted():
             left.add((row["engine"], words[row["shape"]]))
     assert len(left) > 10
     for name, word in left:
-        found = design(Bounce(restitution=0.65, mass=1.0, radius=0.1), name, "4 ms")
-        assert any(word in text for text in found.not_for), (name, word)
+        answer = design(Bounce(restitution=0.65, mass=1.0, radius=0.1), name, "4 ms")
+        assert any(word in text for text in answer.not_for), (name, word)
 
 
 @pytest.mark.parametrize(
@@ -889,16 +891,16 @@ def test_shapes_that_left_the_range_in_an_engine_are_excepted():
     ],
 )
 def test_a_threshold_is_a_height_under_gravity_and_a_speed_without(bounce, said):
-    found = design(Bounce(restitution=0.8, radius=0.1, **bounce), "jolt", 1 / 240)
-    assert any(said in text for text in found.warnings)
+    answer = design(Bounce(restitution=0.8, radius=0.1, **bounce), "jolt", 1 / 240)
+    assert any(said in text for text in answer.warnings)
 
 
 def test_a_spring_is_written_where_no_number_gives_r():
     """ODE takes back a fifth of the penetration in a step: no number had 0.058 from 97 mm."""
     ball = dict(drop_height="97 mm", radius="91 mm", restitution=0.058)
     assert not design(Bounce(**ball), "ode", "1/50").snippet
-    found = design(Bounce(**ball, mass="5 g"), "ode", "1/50")
-    assert found.is_kept and "soft_cfm" in found.snippet
+    answer = design(Bounce(**ball, mass="5 g"), "ode", "1/50")
+    assert answer.is_kept and "soft_cfm" in answer.snippet
 
 
 @pytest.mark.parametrize(
@@ -916,19 +918,19 @@ def test_what_a_promise_needs_is_in_the_text(engine, needed):
 
 
 def test_a_step_that_is_too_short_for_a_contact_has_a_longer_one():
-    found = design(Bounce(drop_height=3, restitution=0.05, radius=0.1), "rapier", "0.1 ms")
-    assert not found.snippet and found.also[0].time_step > 1e-4 and found.also[0].is_kept
+    answer = design(Bounce(drop_height=3, restitution=0.05, radius=0.1), "rapier", "0.1 ms")
+    assert not answer.snippet and answer.also[0].time_step > 1e-4 and answer.also[0].is_kept
 
 
 def test_what_is_assumed_is_said_if_r_depends_on_it():
     """Of matter-js r is for 617 pixels per metre on the Moon, which --explain alone said."""
     ball = Bounce(drop_height=0.9, radius=0.12, gravity=1.62)
-    found = diagnose(ball, "matter-js", {"restitution": 0.6}, "1/60")
-    assert "r is for 617 pixels per metre; with 103 it is 0.4" in str(found)
+    diagnosis = diagnose(ball, "matter-js", {"restitution": 0.6}, "1/60")
+    assert "r is for 617 pixels per metre; with 103 it is 0.4" in str(diagnosis)
     told = diagnose(ball, "matter-js", {"restitution": 0.6, "pixels": 102}, "1/60")
-    assert not any("pixels per metre" in each for each in told.warnings)
+    assert not any("pixels per metre" in warning for warning in told.warnings)
     big = diagnose(Bounce(drop_height=0.3), "pybullet", {"restitution": 0.8}, "1/240")
-    assert any("r is for a radius of 100 mm" in each for each in big.warnings)
+    assert any("r is for a radius of 100 mm" in warning for warning in big.warnings)
 
 
 @pytest.mark.parametrize(("name", "step"), [("pybullet", 1 / 240), ("physx", 1 / 60)])
@@ -936,5 +938,5 @@ def test_without_a_step_an_engine_is_asked_at_its_own(name, step):
     """It was 2.03 ms, which nobody runs."""
     assert design(Bounce(restitution=0.8, radius=0.1), name).asked_step == step
     ball = Bounce(mass=1, restitution=0.259, radius=0.627, drop_height=0.0908)
-    found = design(ball, name)
-    assert found.asked_step == step and (found.is_kept or found.also[0].is_kept)
+    answer = design(ball, name)
+    assert answer.asked_step == step and (answer.is_kept or answer.also[0].is_kept)

@@ -48,9 +48,9 @@ def test_springs_of_solvers_have_implicit_steps(scheme):
     k = np.asarray(3e4)
     c = np.asarray(20.0)
     law = scheme(k, c)
-    found = drop(law, Implicit(), 1e-3, 2.0, 9.81, AT)
+    drops = drop(law, Implicit(), 1e-3, 2.0, 9.81, AT)
     implicit = drop(Linear(k, c), Implicit(), 1e-3, 2.0, 9.81, AT)
-    assert found.restitution == pytest.approx(implicit.restitution, rel=1e-9)
+    assert drops.restitution == pytest.approx(implicit.restitution, rel=1e-9)
     assert law.rest(9.81) == pytest.approx(Linear(k, c).rest(9.81), rel=1e-9)
 
 
@@ -117,9 +117,9 @@ def test_the_damper_of_tsuji_has_one_restitution_at_every_speed(e, speed):
     beta = -math.log(e) / math.hypot(math.pi, math.log(e))
     law = Hertz.of_depth(np.asarray(1e-3), np.asarray(beta), speed)
     step = float(law.duration(speed)) / 2000
-    found = drop(law, SemiImplicit(pulls=True), step, speed, 0.0, AT)
+    drops = drop(law, SemiImplicit(pulls=True), step, speed, 0.0, AT)
     # Near the end the damper is stronger than the spring, and the last part of it takes long.
-    assert float(found.mean) == pytest.approx(e, abs=3 * FINE)
+    assert float(drops.mean) == pytest.approx(e, abs=3 * FINE)
 
 
 @pytest.mark.parametrize("x", [0.1, 0.5, 2.0])
@@ -143,9 +143,9 @@ def test_gravity_in_a_contact_is_that_of_an_integration():
     leaves.direction = 1
     run = solve_ivp(motion, (0, 5), [0.0, -v], events=leaves, rtol=1e-9, max_step=1e-3)
     law = Linear(np.asarray(k), np.asarray(c))
-    found = drop(law, SemiImplicit(), math.pi / 50 / 2500, v, g, AT)
-    assert float(found.mean) == pytest.approx(run.y[1, -1] / v, abs=FINE)
-    assert found.depth.max() == pytest.approx(-run.y[0].min(), rel=3e-3)
+    drops = drop(law, SemiImplicit(), math.pi / 50 / 2500, v, g, AT)
+    assert float(drops.mean) == pytest.approx(run.y[1, -1] / v, abs=FINE)
+    assert drops.depth.max() == pytest.approx(-run.y[0].min(), rel=3e-3)
 
 
 def test_implicit_steps_with_contacts_ahead_bounce_as_physx():
@@ -153,8 +153,8 @@ def test_implicit_steps_with_contacts_ahead_bounce_as_physx():
     measured = {1 / 240: 0.4156, 1 / 1000: 0.8014, 1 / 4000: 0.9460, 1 / 20000: 0.9890}
     law = Linear(np.asarray(2e4), np.asarray(0.0))
     for step, r in measured.items():
-        found = drop(law, Implicit(ahead=True), step, 1.0, 0.0, AT)
-        low, high = found.restitution.min(), found.restitution.max()
+        drops = drop(law, Implicit(ahead=True), step, 1.0, 0.0, AT)
+        low, high = drops.restitution.min(), drops.restitution.max()
         assert low - 3e-4 <= r <= high + 3e-4
 
 
@@ -183,16 +183,16 @@ def test_a_drop_is_that_of_a_ball_that_starts_from_rest():
     after = heights[first:]
     out = int(np.argmax(after >= 0))
     law = Linear(np.asarray(k), np.asarray(c))
-    found = drop(law, SemiImplicit(), h, math.sqrt(2 * g * height), g, exact(np.array([offset])))
-    assert float(found.depth[0]) == pytest.approx(-after[:out].min(), rel=1e-9)
-    assert float(found.restitution[0]) ** 2 * height == pytest.approx(after[out:].max(), rel=1e-9)
+    drops = drop(law, SemiImplicit(), h, math.sqrt(2 * g * height), g, exact(np.array([offset])))
+    assert float(drops.depth[0]) == pytest.approx(-after[:out].min(), rel=1e-9)
+    assert float(drops.restitution[0]) ** 2 * height == pytest.approx(after[out:].max(), rel=1e-9)
 
 
 def test_a_fall_that_is_shorter_than_a_step_is_no_rebound():
     """The rise before it was counted as one: r was up to 1.16 for a body that stays."""
     law = Linear(np.asarray(2000.0), np.asarray(50.0))
-    found = drop(law, SemiImplicit(), 1 / 60, math.sqrt(2 * 9.81 * 1e-3), 9.81, exact(offsets(20)))
-    assert found.restitution.max() == 0
+    drops = drop(law, SemiImplicit(), 1 / 60, math.sqrt(2 * 9.81 * 1e-3), 9.81, exact(offsets(20)))
+    assert drops.restitution.max() == 0
 
 
 def test_a_step_beyond_the_limit_of_stability_throws_the_body_out():
@@ -203,8 +203,8 @@ def test_a_step_beyond_the_limit_of_stability_throws_the_body_out():
 def test_a_compliant_contact_at_a_fine_step_is_computed_to_its_end():
     """A tenth of a millisecond of steps in a contact of three seconds: no limit cuts it off."""
     law = Linear(np.asarray(1.0), np.asarray(0.2))
-    found = drop(law, SemiImplicit(), 1e-6, 1.0, 0.0, AT)
-    assert float(found.mean) == pytest.approx(by_force(0.1), abs=FINE)
+    drops = drop(law, SemiImplicit(), 1e-6, 1.0, 0.0, AT)
+    assert float(drops.mean) == pytest.approx(by_force(0.1), abs=FINE)
 
 
 def test_contacts_side_by_side_are_those_one_by_one():

@@ -45,14 +45,14 @@ def flights(rng, r, impacts, error, scatter, recordings=1, start=3.6):
 def falls(rng, r, heights, error, scatter):
     """Two intervals after each fall from a height."""
     v = np.sqrt(2 * G * heights)
-    found = [flights(rng, r, 1, error, scatter, start=each) for each in v * r(v)]
-    return Recording("falls", "flights", tuple(each.chains[0] for each in found))
+    recordings = [flights(rng, r, 1, error, scatter, start=speed) for speed in v * r(v)]
+    return Recording("falls", "flights", tuple(recording.chains[0] for recording in recordings))
 
 
 def rounded(rng, r, impacts, digits, scatter):
     """Times that are rounded to frames of a camera."""
-    found = flights(rng, r, impacts, 0.0, scatter)
-    times = np.concatenate([[0.0], np.cumsum(found.chains[0])]) + rng.uniform(0, digits)
+    recording = flights(rng, r, impacts, 0.0, scatter)
+    times = np.concatenate([[0.0], np.cumsum(recording.chains[0])]) + rng.uniform(0, digits)
     rounded_times = np.round(times / digits) * digits
     return Recording("flights", "flights", (np.diff(rounded_times),), are_times=True, digit=digits)
 
@@ -66,12 +66,12 @@ def tops(rng, r, impacts, error, scatter):
     return Recording("heights", "heights", (np.array(heights),))
 
 
-def drops(rng, r, heights, each, error, scatter, shared=0.0, height_error=0.0):
+def drops(rng, r, heights, trials, error, scatter, shared=0.0, height_error=0.0):
     """Trials of each height, which share an error of ln r, and one of the height in m."""
-    h = np.repeat(heights, each)
-    true = np.repeat(heights + shared_errors(rng, height_error, len(heights)), each)
+    h = np.repeat(heights, trials)
+    true = np.repeat(heights + shared_errors(rng, height_error, len(heights)), trials)
     v = np.sqrt(2 * G * true)
-    of_height = np.repeat(shared_errors(rng, shared, len(heights)), each)
+    of_height = np.repeat(shared_errors(rng, shared, len(heights)), trials)
     up = true * (r(v) * np.exp(of_height + scatter * rng.normal(size=len(h)))) ** 2
     # The drop height is set, the rebound is read.
     pairs = np.column_stack([h, up + error * rng.normal(size=len(h))])
@@ -122,8 +122,8 @@ def film(rng, r, height, impacts, error, scatter):
     flight = np.searchsorted(begins, t, side="right") - 1
     since = t - np.array(begins)[flight]
     y = np.array(ups)[flight] * since - G / 2 * since**2
-    (found,) = read({"t (s)": t, "y (m)": y + error * rng.normal(size=len(t))}).values()
-    return found
+    (recording,) = read({"t (s)": t, "y (m)": y + error * rng.normal(size=len(t))}).values()
+    return recording
 
 
 def coefficients(rng, r, v, error, scatter, stated, shared=0.0):
@@ -140,8 +140,8 @@ def several_balls(rng, r, balls, impacts, error, scatter, shared):
     """Flights of several balls of one kind, in a column `group`."""
     chains = []
     for own in shared_errors(rng, shared, balls):
-        found = flights(rng, lambda v, own=own: r(v) * math.exp(own), impacts, error, scatter)
-        chains += found.chains
+        recording = flights(rng, lambda v, own=own: r(v) * math.exp(own), impacts, error, scatter)
+        chains += recording.chains
     groups = np.repeat(np.arange(balls), impacts)
     return Recording("balls", "flights", tuple(chains), groups=groups)
 
@@ -229,17 +229,17 @@ KINDS = [
     (
         "12 drops read to 4 mm, v^-0.05",
         partial(power, 0.75, -0.05),
-        partial(drops, heights=np.array([0.2, 0.5, 1.0, 1.8]), each=3, error=4e-3, scatter=0),
+        partial(drops, heights=np.array([0.2, 0.5, 1.0, 1.8]), trials=3, error=4e-3, scatter=0),
     ),
     (
         "20 drops read to 3 mm, scatter 0.015, 1/(1 + b v)",
         steep(0.7),
-        partial(drops, heights=np.geomspace(0.1, 2, 5), each=4, error=3e-3, scatter=0.015),
+        partial(drops, heights=np.geomspace(0.1, 2, 5), trials=4, error=3e-3, scatter=0.015),
     ),
     (
         "5 drops read to 4 mm",
         soft(0.7),
-        partial(drops, heights=np.geomspace(0.2, 1.5, 5), each=1, error=4e-3, scatter=0),
+        partial(drops, heights=np.geomspace(0.2, 1.5, 5), trials=1, error=4e-3, scatter=0),
     ),
     (
         "12 pairs of speeds to 0.03 m/s",
@@ -269,7 +269,7 @@ KINDS = [
     (
         "24 drops read to 2 mm, scatter 0.01",
         soft(0.6),
-        partial(drops, heights=np.geomspace(0.15, 2.5, 6), each=4, error=2e-3, scatter=0.01),
+        partial(drops, heights=np.geomspace(0.15, 2.5, 6), trials=4, error=2e-3, scatter=0.01),
     ),
     (
         "7 coefficients at nearly one speed, scatter 0.02",
@@ -361,12 +361,12 @@ KINDS = [
     (
         "10 drops read to 2 mm, scatter 0.03",
         flat(0.65),
-        partial(drops, heights=np.geomspace(0.2, 2, 5), each=2, error=2e-3, scatter=0.03),
+        partial(drops, heights=np.geomspace(0.2, 2, 5), trials=2, error=2e-3, scatter=0.03),
     ),
     (
         "30 drops read to 1 mm, scatter 0.004, v^-0.1",
         partial(power, 0.6, -0.1),
-        partial(drops, heights=np.geomspace(0.1, 2, 10), each=3, error=1e-3, scatter=0.004),
+        partial(drops, heights=np.geomspace(0.1, 2, 10), trials=3, error=1e-3, scatter=0.004),
     ),
     (
         "8 pairs of speeds to 0.05 m/s, scatter 0.005",
@@ -437,12 +437,12 @@ KINDS = [
     (
         "15 drops read to 5 mm, any scatter",
         soft(0.7),
-        partial(drops, heights=np.geomspace(0.2, 2, 5), each=3, error=5e-3, scatter=None),
+        partial(drops, heights=np.geomspace(0.2, 2, 5), trials=3, error=5e-3, scatter=None),
     ),
     (
         "8 drops from one height read to 2 mm, any scatter",
         flat(0.65),
-        partial(drops, heights=np.array([1.0]), each=8, error=2e-3, scatter=None),
+        partial(drops, heights=np.array([1.0]), trials=8, error=2e-3, scatter=None),
     ),
     (
         "6 pairs of speeds to 0.02 m/s, any scatter",
@@ -512,7 +512,7 @@ KINDS = [
         partial(
             drops,
             heights=np.linspace(0.2, 1, 5),
-            each=10,
+            trials=10,
             error=3e-3,
             scatter=5e-3,
             height_error=5e-3,
@@ -524,7 +524,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.3, 1.5, 3),
-            each=5,
+            trials=5,
             error=2e-3,
             scatter=0.01,
             shared=0.025,
@@ -536,7 +536,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.4, 1.6, 3),
-            each=10,
+            trials=10,
             error=2e-3,
             scatter=0.02,
             shared=0.05,
@@ -548,7 +548,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.2, 2, 3),
-            each=4,
+            trials=4,
             error=2e-3,
             scatter=None,
             shared=None,
@@ -560,7 +560,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.2, 2, 4),
-            each=3,
+            trials=3,
             error=2e-3,
             scatter=None,
             shared=None,
@@ -572,7 +572,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.3, 1.5, 4),
-            each=10,
+            trials=10,
             error=2e-3,
             scatter=0.01,
             shared=0.025,
@@ -584,7 +584,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.1, 2, 10),
-            each=3,
+            trials=3,
             error=2e-3,
             scatter=0.01,
             shared=0.015,
@@ -596,7 +596,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.3, 1.5, 5),
-            each=[1, 2, 3, 10, 20],
+            trials=[1, 2, 3, 10, 20],
             error=2e-3,
             scatter=0.01,
             shared=0.02,
@@ -608,7 +608,7 @@ KINDS = [
         partial(
             drops,
             heights=np.geomspace(0.3, 1.5, 4),
-            each=[1, 3, 10, 20],
+            trials=[1, 3, 10, 20],
             error=2e-3,
             scatter=0.03,
         ),
@@ -657,12 +657,12 @@ KINDS = [
     (
         "3 drops from each of 3 heights read to 1 mm, scatter 0.005",
         soft(0.8),
-        partial(drops, heights=np.array([0.35, 0.8, 1.4]), each=3, error=1e-3, scatter=0.005),
+        partial(drops, heights=np.array([0.35, 0.8, 1.4]), trials=3, error=1e-3, scatter=0.005),
     ),
     (
         "9 drops from 9 heights read to 1 mm, scatter 0.005",
         soft(0.8),
-        partial(drops, heights=np.geomspace(0.35, 1.4, 9), each=1, error=1e-3, scatter=0.005),
+        partial(drops, heights=np.geomspace(0.35, 1.4, 9), trials=1, error=1e-3, scatter=0.005),
     ),
     # The commonest film.
     (
@@ -698,8 +698,8 @@ def answer(kind, rng):
 def study(kind, recordings, seed):
     """Return the numbers of a kind: held, half width, times wider than needed."""
     rng = np.random.default_rng(seed)
-    found, truths = zip(*(answer(kind, rng) for _ in range(recordings)), strict=True)
-    value, low, high, _ = np.array([astuple(each) for each in found]).T
+    estimates, truths = zip(*(answer(kind, rng) for _ in range(recordings)), strict=True)
+    value, low, high, _ = np.array([*map(astuple, estimates)]).T
     truth = np.array(truths)
     held = int(np.sum((low <= truth) & (truth <= high)))
     widths = (high - low) / 2
@@ -709,7 +709,7 @@ def study(kind, recordings, seed):
 
 def main():
     recordings = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    chosen = [int(each) for each in sys.argv[2:]] or range(len(KINDS))
+    chosen = [int(number) for number in sys.argv[2:]] or range(len(KINDS))
     print("| recording | held, % | half width | wider than needed |")
     print("| --- | --- | --- | --- |")
     for i in chosen:

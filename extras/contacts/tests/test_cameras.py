@@ -102,9 +102,9 @@ def test_intervals_of_films_hold_r(camera, least, most):
 
 def number_in(form, notes):
     """Return the number of a note."""
-    found = re.search(form.replace("NUMBER", "([-\\d.e]+)"), "\n".join(notes))
-    assert found, notes
-    return float(found[1])
+    match = re.search(form.replace("NUMBER", "([-\\d.e]+)"), "\n".join(notes))
+    assert match, notes
+    return float(match[1])
 
 
 @pytest.mark.parametrize(("r", "lasts"), [(0.6, 0.005), (0.8, 0.005), (0.8, 0.02), (0.9, 0.02)])
@@ -112,13 +112,13 @@ def test_the_contact_of_a_film_is_taken_off_and_its_note_has_what_that_does(r, l
     """--contact-time left r at 0.8101 for 0.8."""
     columns = film(np.random.default_rng(3), r, 4, rate=240, lasts=lasts)
     plain = fit(columns)
-    found = fit(columns, contact_time=lasts)
-    assert found.interval[0] <= r <= found.interval[1] < plain.restitution
+    fitted = fit(columns, contact_time=lasts)
+    assert fitted.interval[0] <= r <= fitted.interval[1] < plain.restitution
     for_each = number_in("too high by NUMBER for each ms", plain.notes)
     # The note is a derivative, and r is not quite linear in 20 ms.
-    assert plain.restitution - found.restitution == pytest.approx(1e3 * lasts * for_each, rel=0.15)
-    assert found.bounce().contact_time > lasts
-    assert f"the contact, {1e3 * lasts:g} ms, is taken off" in found.explained
+    assert plain.restitution - fitted.restitution == pytest.approx(1e3 * lasts * for_each, rel=0.15)
+    assert fitted.bounce().contact_time > lasts
+    assert f"the contact, {1e3 * lasts:g} ms, is taken off" in fitted.explained
 
 
 def test_a_contact_time_needs_a_clock_and_flights():
@@ -138,8 +138,8 @@ def test_a_turned_picture_of_a_ball_that_drifts_is_set_upright_by_x(turn, drift)
     both = film(rng, 0.8, 5, rate=240, turn=turn, drift=drift, keeps=0.9)
     alone = {name: values for name, values in both.items() if name != "x (px)"}
     upright, turned = fit(both), fit(alone)
-    for found in (upright, turned):
-        assert found.interval[0] <= 0.8 <= found.interval[1]
+    for fitted in (upright, turned):
+        assert fitted.interval[0] <= 0.8 <= fitted.interval[1]
     assert any("the floor moves by" in note for note in turned.notes)
     assert not any("columns not used" in note for note in upright.notes)
     assert np.ptp(upright.interval) < np.ptp(turned.interval)
@@ -152,8 +152,8 @@ def test_positions_sideways_may_have_another_unit_of_length_or_are_not_used():
     metres = fit({"t (s)": t, "y (m)": y / 900, "x (cm)": x / 9})
     assert metres.restitution == pytest.approx(fit(columns).restitution, abs=1e-6)
     for heading, values in (("x (px)", x), ("x (cm)", np.where(t > t[9], x / 9, math.nan))):
-        found = fit({"t (s)": t, "y (m)": y / 900, heading: values})
-        assert "columns not used: 'x'" in found.explained
+        fitted = fit({"t (s)": t, "y (m)": y / 900, heading: values})
+        assert "columns not used: 'x'" in fitted.explained
 
 
 def pooled(rate, **moves):
@@ -168,9 +168,9 @@ def pooled(rate, **moves):
 )
 def test_films_of_one_impact_tell_what_the_camera_does(rate, moves):
     """No time of a flight helps: as of an upright camera the width is 0.3, or r is 0.74."""
-    found = pooled(rate, **moves)
+    fitted = pooled(rate, **moves)
     # Four standard deviations: the films have one camera.
-    assert np.ptp(found.interval) < 0.025 and abs(found.restitution - 0.8) < np.ptp(found.interval)
+    assert abs(fitted.restitution - 0.8) < np.ptp(fitted.interval) < 0.025
 
 
 def test_films_of_one_impact_say_what_a_picture_that_moves_does():
@@ -186,8 +186,8 @@ def test_flights_that_no_camera_shows_have_larger_errors_and_a_note():
     columns = film(np.random.default_rng(2), 0.8, 4, rate=240)
     t, y = columns["t (s)"], columns["y (px)"]
     zooms = {"t (s)": t, "y (px)": y * (1 + 0.05 * np.sin(9 * t))}
-    found, plain = fit(zooms), fit({"t (s)": t, "y (px)": y})
-    times = number_in("errors are taken as NUMBER times", found.notes)
-    assert times > 1.5 and np.ptp(found.interval) > np.ptp(plain.interval)
-    assert found.interval[0] <= 0.8 <= found.interval[1]
+    zoomed, plain = fit(zooms), fit({"t (s)": t, "y (px)": y})
+    times = number_in("errors are taken as NUMBER times", zoomed.notes)
+    assert times > 1.5 and np.ptp(zoomed.interval) > np.ptp(plain.interval)
+    assert zoomed.interval[0] <= 0.8 <= zoomed.interval[1]
     assert not any("not quite those of one camera" in note for note in plain.notes)

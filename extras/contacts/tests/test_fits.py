@@ -31,12 +31,12 @@ coverage = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(coverage)
 
 
-def trials(rng, shared, heights=5, each=10):
+def trials(rng, shared, heights=5, repeats=10):
     """Return columns of trials of each height, whose r shares an error."""
     h = np.linspace(20, 100, heights)
     r = 0.85 * np.exp(shared * rng.normal(size=heights))[:, None]
-    r = r * np.exp(0.005 * rng.normal(size=(heights, each)))
-    up = {f"trial {i + 1} (cm)": np.round(h * r[:, i] ** 2, 1) for i in range(each)}
+    r = r * np.exp(0.005 * rng.normal(size=(heights, repeats)))
+    up = {f"trial {i + 1} (cm)": np.round(h * r[:, i] ** 2, 1) for i in range(repeats)}
     return {"drop height (cm)": h, **up}
 
 
@@ -45,10 +45,10 @@ def test_trials_of_one_height_share_its_error():
     rng = np.random.default_rng(11)
     held = []
     for _ in range(20):
-        found = fit(trials(rng, 0.025))
-        held.append(found.interval[0] <= 0.85 <= found.interval[1])
-        assert len(found.impacts.speed) == 50
-        assert "means of 5 groups deviate by" in str(found)
+        fitted = fit(trials(rng, 0.025))
+        held.append(fitted.interval[0] <= 0.85 <= fitted.interval[1])
+        assert len(fitted.impacts.speed) == 50
+        assert "means of 5 groups deviate by" in str(fitted)
     # Of 20 more than 3 are missed once in 60 times, if 95 % hold.
     assert sum(held) >= 17
 
@@ -58,7 +58,7 @@ def test_more_trials_of_the_same_heights_do_not_narrow_the_interval():
 
     What gets smaller is the share of the errors of readings.
     """
-    one = trials(np.random.default_rng(12), 0.02, each=1)
+    one = trials(np.random.default_rng(12), 0.02, repeats=1)
     once, often = (
         fit(one | {f"trial {i} (cm)": one["trial 1 (cm)"] for i in range(1, n + 1)})
         for n in (2, 20)
@@ -75,10 +75,10 @@ def test_heights_that_are_moved_by_1_mm_are_the_same_heights():
         h = np.repeat([0.35, 0.8, 1.4], 3)
         up = h * (0.8 * np.exp(0.005 * rng.normal(size=9))) ** 2
         moved = h + rng.choice([-1e-3, 0, 1e-3], 9)
-        three, nine = (fit({"drop (m)": each, "rebound (m)": up}) for each in (h, moved))
+        three, nine = (fit({"drop (m)": heights, "rebound (m)": up}) for heights in (h, moved))
         single = fit(replace(three.recording, groups=None))
         assert len(set(nine.impacts.groups)) == 3
-        widths.append([np.ptp(each.interval) for each in (three, nine, single)])
+        widths.append([np.ptp(fitted.interval) for fitted in (three, nine, single)])
     wide, moved_wide, narrow = np.median(widths, axis=0)
     assert 0.8 < moved_wide / wide < 1.25 and wide < 3 * narrow
 
@@ -87,20 +87,20 @@ def test_single_impacts_at_new_heights_are_no_groups():
     """Ten drops from nine heights had an interval twice as wide as those from ten."""
     h = np.geomspace(0.3, 1.5, 9)
     up = 0.64 * h * np.exp(0.01 * np.random.default_rng(2).normal(size=9))
-    found = fit({"drop (m)": [*h, h[0]], "rebound (m)": [*up, 1.01 * up[0]]})
-    assert found.interval == fit(replace(found.recording, groups=None)).interval
-    assert "groups" not in str(found)
+    fitted = fit({"drop (m)": [*h, h[0]], "rebound (m)": [*up, 1.01 * up[0]]})
+    assert fitted.interval == fit(replace(fitted.recording, groups=None)).interval
+    assert "groups" not in str(fitted)
 
 
 def test_one_height_or_two_leave_its_error_out_and_a_note_says_so():
     rng = np.random.default_rng(13)
     for heights in (1, 2):
         columns = trials(rng, 0.01, heights)
-        found = fit(columns)
-        single = replace(found.recording, groups=None)
-        assert found.interval == fit(single, resolution=None).interval
+        fitted = fit(columns)
+        single = replace(fitted.recording, groups=None)
+        assert fitted.interval == fit(single, resolution=None).interval
         assert any(
-            "impacts of one height, film or ball share an error" in note for note in found.notes
+            "impacts of one height, film or ball share an error" in note for note in fitted.notes
         )
 
 
@@ -113,24 +113,24 @@ def test_the_readings_of_a_mean_are_those_of_its_impacts():
     mean = (of == np.arange(3)[:, None]) / 4
     for known in (None, 1e-3, np.array([1e-3, 2e-3, 3e-3])):
         means, size = group_means(impacts, known)
-        each = impacts.errors(1.0 if known is None else known)
-        found = means.errors(1.0 if size is None else size)
-        for matrices, expected in zip(found, each, strict=True):
+        errors_of_impacts = impacts.errors(1.0 if known is None else known)
+        errors_of_means = means.errors(1.0 if size is None else size)
+        for matrices, expected in zip(errors_of_means, errors_of_impacts, strict=True):
             assert block_diag(*matrices) == pytest.approx(mean @ block_diag(*expected))
         assert means.log_r == pytest.approx(mean @ impacts.log_r)
         assert list(means.groups) == list(names)
 
 
 def test_the_croquet_ball():
-    found = fit("croquet")
-    low, high = found.interval
+    fitted = fit("croquet")
+    low, high = fitted.interval
     # The points scatter by 0.0011 about a smooth curve, which has 0.8216 there.
     assert low < 0.8216 < high and high - low < 0.005
 
 
 def test_one_impact_has_no_interval_of_its_own():
-    found = fit("superball")
-    assert any("fewer than three impacts" in note for note in found.notes)
+    fitted = fit("superball")
+    assert any("fewer than three impacts" in note for note in fitted.notes)
 
 
 # A third of the kinds, and of those with rounded times and with drops one.
@@ -162,9 +162,11 @@ def test_the_confidence_of_impacts_of_one_speed_is_that_of_a_sum_of_squares():
     below = chdtrc(n - 1, square / (error**2 + s**2))
     # Each weight reaches to the middle of two neighbours; the prior is flat below its middle.
     small = s[:-1] < 0.009
-    found = np.cumsum(curves.confidence.sum(axis=(1, 2)))[:-1][small]
+    distribution = np.cumsum(curves.confidence.sum(axis=(1, 2)))[:-1][small]
     expected = ((below[1:] + below[:-1]) / 2)[small]
-    assert found[1:] / found[-1] == pytest.approx(expected[1:] / expected[-1], rel=1e-6)
+    assert distribution[1:] / distribution[-1] == pytest.approx(
+        expected[1:] / expected[-1], rel=1e-6
+    )
 
 
 def test_scatter_is_known_best_by_sums_in_which_errors_of_times_cancel():
@@ -183,9 +185,9 @@ def test_a_number_that_is_typed_wrongly_is_pointed_at():
     """With 0.08 for 0.80 r was 0.107, outside of its own interval of 0.197 to 0.788."""
     v = [4.43, 3.13, 2.21, 1.1, 0.5]
     typed = {"v (m/s)": v, "e": [0.8, 0.08, 0.81, 0.8, 0.8], "error": [0.01] * 5}
-    found = fit(typed)
-    assert found.interval[0] < found.restitution < found.interval[1]
-    assert any("r = 0.08 of impact 2: far" in note for note in found.notes)
+    fitted = fit(typed)
+    assert fitted.interval[0] < fitted.restitution < fitted.interval[1]
+    assert any("r = 0.08 of impact 2: far" in note for note in fitted.notes)
     # Two that are alike are not one that is typed wrongly.
     for e in ([0.8, 0.75, 0.81, 0.8, 0.8], [0.8, 0.4, 0.41, 0.8, 0.8]):
         assert not any("far from" in note for note in fit({**typed, "e": e}).notes)
@@ -206,12 +208,12 @@ def test_a_film_of_30_frames_a_second_is_read(tmp_path):
 
     def written(head, flights):
         times = np.insert(np.cumsum(flights), 0, 0) / 30
-        path.write_text(head + "time\n" + "".join(f"{each:.3f}\n" for each in times))
+        path.write_text(head + "time\n" + "".join(f"{time:.3f}\n" for time in times))
         return fit(path)
 
-    found = written("# frame rate: 30\n", flights)
-    assert rounding_of(found.recording) == pytest.approx(1 / 30)
-    assert any("multiples of 33.33 ms" in note for note in found.notes)
+    fitted = written("# frame rate: 30\n", flights)
+    assert rounding_of(fitted.recording) == pytest.approx(1 / 30)
+    assert any("multiples of 33.33 ms" in note for note in fitted.notes)
     # A resolution that is given takes the place of the frame.
     assert not any("multiples" in note for note in fit(path, resolution="1 ms").notes)
     with pytest.raises(Refused, match="follows one of .* need a line # frame rate: 30"):
@@ -224,8 +226,8 @@ def test_a_film_of_30_frames_a_second_is_read(tmp_path):
 
 def test_readings_that_are_all_alike_have_an_interval():
     """The squares were -6e-74, and the interval was NaN."""
-    found = fit({"drop height (m)": [1.0] * 6, "rebound height (m)": [0.64] * 6})
-    low, high = found.interval
+    fitted = fit({"drop height (m)": [1.0] * 6, "rebound height (m)": [0.64] * 6})
+    low, high = fitted.interval
     assert 0.79 < low < 0.8 < high < 0.81
 
 
@@ -233,21 +235,23 @@ def test_a_resolution_far_below_the_scatter_does_not_hide_it():
     """With 1 microsecond r had ± 0.006, and with 0.1 ± 0.0006, for ± 0.018."""
     rng = np.random.default_rng(5)
     recording = heard(rng, 0.0, 0.02, impacts=6)
-    wide, narrow = (fit(recording, resolution=each).interval for each in ("10 us", "1e-9 s"))
+    wide, narrow = (
+        fit(recording, resolution=resolution).interval for resolution in ("10 us", "1e-9 s")
+    )
     assert narrow[1] - narrow[0] == pytest.approx(wide[1] - wide[0], rel=0.05)
 
 
 def test_r_of_exactly_1_everywhere_contradicts_nothing():
     # ln r is 0 on every processor, and so is each deviation from a power of the speed.
     pairs = np.array([[1.0, 1.0], [2.0, 1.0], [3.0, 1.0], [4.0, 1.0]])
-    found = fit(Recording("exact", "coefficients", (pairs,)))
-    assert found.restitution == found.interval[1] == 1
+    fitted = fit(Recording("exact", "coefficients", (pairs,)))
+    assert fitted.restitution == fitted.interval[1] == 1
 
 
 def test_a_stated_resolution_is_used():
     flights = 0.9 * 0.8 ** np.arange(8)
     recording = Recording("exact", "flights", (flights,))
-    fine, coarse = (fit(recording, resolution=each) for each in ("0.1 ms", "20 ms"))
+    fine, coarse = (fit(recording, resolution=resolution) for resolution in ("0.1 ms", "20 ms"))
     assert fine.interval[1] - fine.interval[0] < coarse.interval[1] - coarse.interval[0]
     with pytest.raises(Refused, match="does not fit"):
         fit(recording, resolution="1 mm")
@@ -258,16 +262,16 @@ def test_a_stated_resolution_is_used():
 
 
 def test_errors_of_times_enter_the_flights_on_both_sides():
-    found = impacts_of(Recording("", "flights", (np.array([1.0, 0.8, 0.64]),)))
+    impacts = impacts_of(Recording("", "flights", (np.array([1.0, 0.8, 0.64]),)))
     step = 1e-6
     times = np.array([0.0, 1.0, 1.8, 2.44])
     for i in range(4):
         moved = times + step * (np.arange(4) == i)
         again = impacts_of(Recording("", "flights", (np.diff(moved),)))
-        slope = (again.log_r - found.log_r) / step
-        assert slope == pytest.approx(found.readings[0][:, i], abs=1e-4)
-        slope = np.log(again.speed / found.speed) / step
-        assert slope == pytest.approx(found.of_speed[0][:, i], abs=1e-4)
+        slope = (again.log_r - impacts.log_r) / step
+        assert slope == pytest.approx(impacts.readings[0][:, i], abs=1e-4)
+        slope = np.log(again.speed / impacts.speed) / step
+        assert slope == pytest.approx(impacts.of_speed[0][:, i], abs=1e-4)
 
 
 def test_traces_of_errors_are_those_of_whole_matrices():
@@ -278,7 +282,7 @@ def test_traces_of_errors_are_those_of_whole_matrices():
     weights = rng.uniform(1, 2, size=(1, 6))
     of_r, of_speed = zip(*series, strict=True)
     growth = rng.uniform(0.5, 2, size=(6, 7))
-    found = _by_errors(weights, bases, of_r, of_speed, np.split(growth, [2, 3]))
+    traces = _by_errors(weights, bases, of_r, of_speed, np.split(growth, [2, 3]))
     basis = block_diag(*bases)
     w = basis @ np.diag(weights[0]) @ basis.T
     of_mean = w @ np.ones((6, 1))
@@ -286,14 +290,14 @@ def test_traces_of_errors_are_those_of_whole_matrices():
     m = block_diag(*of_r)
     for i in range(7):
         x = growth[:, i : i + 1] * block_diag(*of_speed)
-        assert found[0][0, i] == pytest.approx(np.trace(p @ x @ m.T))
-        assert found[1][0, i] == pytest.approx(np.trace(p @ x @ x.T))
+        assert traces[0][0, i] == pytest.approx(np.trace(p @ x @ m.T))
+        assert traces[1][0, i] == pytest.approx(np.trace(p @ x @ x.T))
 
 
 def test_a_fit_is_a_bounce_for_an_engine():
-    found = fit("golf_ball")
-    written = design(found.bounce(), "mujoco", "2 ms")
-    assert written.bounce.restitution == pytest.approx(found.restitution)
+    fitted = fit("golf_ball")
+    written = design(fitted.bounce(), "mujoco", "2 ms")
+    assert written.bounce.restitution == pytest.approx(fitted.restitution)
     assert written.bounce.radius == pytest.approx(0.021)
     other = fit("bouncy_ball", mass="20 g", diameter="30 mm").bounce()
     assert (other.mass, other.radius) == (0.02, 0.015)
@@ -327,7 +331,7 @@ def test_one_wrong_reading_is_named_by_the_impacts_that_it_enters(readings, name
     the next one too low.
     """
     (note,) = [note for note in fit(readings).notes if "as by one wrong or missing number" in note]
-    assert note.count("r = ") == len(named) and all(each in note for each in named)
+    assert note.count("r = ") == len(named) and all(phrase in note for phrase in named)
 
 
 def test_no_reading_of_the_experiments_is_called_wrong():
@@ -339,13 +343,13 @@ def test_errors_of_pooled_pairs_make_no_slope(typed):
     """Twenty pairs of intervals with one r had v^-0.4, and intervals that held r in 90 %."""
     rng = np.random.default_rng(8)
     pooled = coverage.flights(rng, lambda v: 0.8, 1, 0.02, 0, recordings=20)
-    found = fit(pooled)
-    assert np.isnan(found.slope) and "differ by no more than their errors" in str(found)
+    fitted = fit(pooled)
+    assert np.isnan(fitted.slope) and "differ by no more than their errors" in str(fitted)
     # One chain with the same errors has speeds that differ by much more.
     assert not np.isnan(fit(coverage.flights(rng, lambda v: 0.8, 5, 0.02, 0)).slope)
     # Where no speed was measured, r is known as far as slopes are.
     far = fit(pooled, speed=1.0)
-    assert np.ptp(far.interval) > 2 * np.ptp(found.interval)
+    assert np.ptp(far.interval) > 2 * np.ptp(fitted.interval)
     for kind in (61, 63, 66):
         held, _, _ = coverage.study(coverage.KINDS[kind], 40, seed=4)
         assert held >= 33
@@ -374,8 +378,10 @@ def test_series_are_fitted_as_by_one_matrix_of_all():
         of_speed=(block_diag(*impacts.of_speed),),
     )
     for known in (None, 0.01):
-        found, expected = (estimate(curves_of(each, known, 2.0)) for each in (impacts, one))
-        assert astuple(found) == pytest.approx(astuple(expected), abs=1e-8)
+        by_series, expected = (
+            estimate(curves_of(arrangement, known, 2.0)) for arrangement in (impacts, one)
+        )
+        assert astuple(by_series) == pytest.approx(astuple(expected), abs=1e-8)
     # A wrong time of the third series enters its three impacts.
     impacts.log_r[6:9] += 0.3 * impacts.readings[2][:, 2]
     assert list(misread(impacts)) == list(misread(one)) == [6, 7, 8]

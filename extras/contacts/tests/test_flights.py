@@ -127,8 +127,8 @@ def verdict(path, option, r, drop, first):
     """Return what an answer is: inside, refused with a remedy, named, or wrong."""
     given = dict(zip(("mass", "diameter"), BALLS[option], strict=True)) if option != "plain" else {}
     try:
-        found = fit(path, **given)
-        speed = found.bounce().speed if option == "design" else found.speed
+        fitted = fit(path, **given)
+        speed = fitted.bounce().speed if option == "design" else fitted.speed
     except Refused as refused:
         return (
             "refused"
@@ -139,11 +139,11 @@ def verdict(path, option, r, drop, first):
             else str(refused)
         )
     # Four standard deviations in place of two, because there are hundreds of cells.
-    holds = abs(r - found.restitution) <= np.ptp(found.interval)
-    is_fast = not math.isnan(speed) and abs(math.log(found.impacts.speed.max() / first)) > 0.1
-    said = re.search("falls from ([\\d.]+) m:|gravity is not|left out are pos", str(found.notes))
+    holds = abs(r - fitted.restitution) <= np.ptp(fitted.interval)
+    is_fast = not math.isnan(speed) and abs(math.log(fitted.impacts.speed.max() / first)) > 0.1
+    said = re.search("falls from ([\\d.]+) m:|gravity is not|left out are pos", str(fitted.notes))
     is_named = said and (said[1] is None or float(said[1]) > 1.2 * drop)
-    return "named" if is_named and (is_fast or not holds) else f"{found}" * (is_fast or not holds)
+    return "named" if is_named and (is_fast or not holds) else f"{fitted}" * (is_fast or not holds)
 
 
 @pytest.mark.parametrize("fault", FAULTS)

@@ -196,9 +196,9 @@ def test_files_are_read_as_they_are(name, tmp_path):
     path = tmp_path / "recording.csv"
     # Spreadsheets write capitals as well as UTF-16.
     path.write_text(FILES[name], "utf-16" if "capitals" in name else "utf-8")
-    found = fit(path)
-    assert found.restitution == pytest.approx(0.82, abs=3e-3)
-    low, high = found.interval
+    fitted = fit(path)
+    assert fitted.restitution == pytest.approx(0.82, abs=3e-3)
+    low, high = fitted.interval
     assert low - 1e-6 <= 0.82 <= high + 1e-6
 
 
@@ -221,9 +221,9 @@ def test_columns_are_named_where_no_synonym_is_known(tmp_path, typed):
     path.write_text("Messung vom 3. Mai\nZeit in s;Ort in m;Tempo\n" + numbers)
     with pytest.raises(Refused, match="'Ort' is not known, 'Tempo' .* --columns 'NAME=t"):
         fit(path)
-    found = fit(path, columns={"Zeit in s": "t (s)", "2": "y (m)"})
-    assert found.restitution == pytest.approx(0.82, abs=1e-3)
-    said = found.result.split(": ")[1]
+    fitted = fit(path, columns={"Zeit in s": "t (s)", "2": "y (m)"})
+    assert fitted.restitution == pytest.approx(0.82, abs=1e-3)
+    said = fitted.result.split(": ")[1]
     assert said in typed(f"fit {path} --columns 'zeit in s=t (s)' --columns '2=y (m)'")[1]
     with pytest.raises(Refused, match="no column 'Weg': its columns are Zeit in s, Ort in m, T"):
         fit(path, columns={"Weg": "y"})
@@ -305,8 +305,11 @@ def test_each_ball_has_its_own_r(name, tmp_path, typed):
     """They were pooled: tennis, golf and table tennis had one r of 0.8249."""
     path = tmp_path / "balls.csv"
     path.write_text(BALLS[name])
-    found = {ball: fit(each).restitution for ball, each in read(path).items()}
-    assert found == {"tennis": pytest.approx(0.73, abs=1e-3), "golf": pytest.approx(0.82, abs=1e-3)}
+    restitutions = {ball: fit(recording).restitution for ball, recording in read(path).items()}
+    assert restitutions == {
+        "tennis": pytest.approx(0.73, abs=1e-3),
+        "golf": pytest.approx(0.82, abs=1e-3),
+    }
     assert fit(path, ball="golf").restitution == pytest.approx(0.82, abs=1e-3)
     assert fit(path, ball="Golf").restitution == fit(path, ball="golf").restitution
     with pytest.raises(Refused, match="has tennis, golf: name one, --ball"):
@@ -487,7 +490,7 @@ def test_an_archive_with_a_wrong_bit_is_read_or_refused_in_one_line(method, tmp_
         except Refused as refused:
             said.add(re.split("[:,]", str(refused).replace("Data.csv", ""))[1])
     assert {" copy it again", " That compression method is not supported"} <= said
-    assert any("encrypted" in each for each in said)
+    assert any("encrypted" in message for message in said)
 
 
 def test_what_is_no_text_is_refused(tmp_path):
@@ -531,9 +534,9 @@ def test_other_sources_are_refused(source, said):
 def test_columns_are_read_as_those_of_a_file():
     heights = np.array(DROPS)
     columns = {"drop height (cm)": heights, "rebound height (cm)": 0.6724 * heights[:3]}
-    found = fit(columns)
-    assert found.restitution == pytest.approx(0.82, abs=1e-9)
-    assert found.impacts.speed == pytest.approx(np.sqrt(2 * G * heights[:3] / 100))
+    fitted = fit(columns)
+    assert fitted.restitution == pytest.approx(0.82, abs=1e-9)
+    assert fitted.impacts.speed == pytest.approx(np.sqrt(2 * G * heights[:3] / 100))
 
 
 DRAGGED = {
@@ -549,21 +552,21 @@ DRAGGED = {
 def test_the_size_of_the_drag_is_the_difference_of_r_with_and_without(kind, ball):
     """It was 2.2 to 2.9 times too large, as if a ball kept the speed of its impact."""
     mass, diameter = ball
-    found = fit(DRAGGED[kind], mass=mass, diameter=diameter)
+    fitted = fit(DRAGGED[kind], mass=mass, diameter=diameter)
     plain = fit(DRAGGED[kind])
-    note = next(each for each in found.notes if "the drag of the air is removed" in each)
+    note = next(note for note in fitted.notes if "the drag of the air is removed" in note)
     printed = float(note.rsplit(" ", 1)[1])
-    assert printed == pytest.approx(found.restitution - plain.restitution, rel=0.05)
+    assert printed == pytest.approx(fitted.restitution - plain.restitution, rel=0.05)
     # Without mass and diameter the size is that of a table tennis ball, which is light.
-    note = next(each for each in plain.notes if "drag" in each)
+    note = next(note for note in plain.notes if "drag" in note)
     assert float(re.search(r"0\.\d+", note)[0]) >= printed / 1.01
 
 
 def test_the_drag_is_said_only_where_it_matters():
     low = fit({"drop (m)": [0.1, 0.2, 0.3], "rebound (m)": [0.064, 0.125, 0.197]})
-    assert not any("drag" in each for each in low.notes)
+    assert not any("drag" in note for note in low.notes)
     high = fit({"drop (m)": [1.0, 2.0, 3.0], "rebound (m)": [0.64, 1.2801, 1.9199]})
-    assert any("the drag of the air is not removed" in each for each in high.notes)
+    assert any("the drag of the air is not removed" in note for note in high.notes)
 
 
 @pytest.mark.parametrize(
@@ -612,16 +615,16 @@ def test_a_note_says_what_was_done(text, said, tmp_path):
     ],
 )
 def test_a_column_group_pools_balls_whose_impacts_share_an_error(columns):
-    found = fit(columns | {"group": ["a", "", "b", "b", "c", "c"]})
-    assert sorted(set(found.impacts.groups)) == ["a", "b", "c"]
-    assert "3 groups deviate" in str(found) or len(found.impacts.speed) == 3
+    fitted = fit(columns | {"group": ["a", "", "b", "b", "c", "c"]})
+    assert sorted(set(fitted.impacts.groups)) == ["a", "b", "c"]
+    assert "3 groups deviate" in str(fitted) or len(fitted.impacts.speed) == 3
 
 
 @pytest.mark.parametrize(("drop", "r"), [(1.0, "0.825"), (1.04, "0.809")])
 def test_heights_of_the_top_of_a_ball_have_the_r_of_the_page(drop, r):
     """Both heights of the top were said to have 0.825."""
-    found = fit({"drop (m)": [drop], "rebound (m)": [0.8**2 + 0.04]})
-    assert f"{found.restitution:.3f}" == r
+    fitted = fit({"drop (m)": [drop], "rebound (m)": [0.8**2 + 0.04]})
+    assert f"{fitted.restitution:.3f}" == r
     page = Path(__file__).parents[1] / "docs" / "files.md"
     assert r in page.read_text("utf-8")
 
@@ -629,8 +632,8 @@ def test_heights_of_the_top_of_a_ball_have_the_r_of_the_page(drop, r):
 def test_a_line_without_r_has_no_error_either():
     """Errors of four impacts met five lines: a traceback of NumPy."""
     r = [0.8, None, 0.79, 0.81, 0.8]
-    found = fit({"speed (m/s)": [1, 2, 3, 4, 5], "COR": r, "std": [0.01] * 5})
-    assert len(found.impacts.speed) == 4 and "missing in line 3" in found.notes[0]
+    fitted = fit({"speed (m/s)": [1, 2, 3, 4, 5], "COR": r, "std": [0.01] * 5})
+    assert len(fitted.impacts.speed) == 4 and "missing in line 3" in fitted.notes[0]
 
 
 def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
@@ -641,20 +644,22 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         fit(path)
     with pytest.raises(Refused, match="no line 99"):
         fit(path, leave_out=(99,))
-    found = fit(path, leave_out=(5,))
-    assert len(found.impacts.speed) == 4
-    assert found.restitution == pytest.approx(0.82, abs=1e-3)
+    fitted = fit(path, leave_out=(5,))
+    assert len(fitted.impacts.speed) == 4
+    assert fitted.restitution == pytest.approx(0.82, abs=1e-3)
     # Nothing is missing in a line that was to be left out.
-    assert not any("is missing" in note for note in found.notes)
+    assert not any("is missing" in note for note in fitted.notes)
 
 
 def test_an_empty_line_divides_a_series(tmp_path):
     """Flights on both sides of it were compared."""
     path = tmp_path / "two.csv"
     path.write_text("time [s]\n0.1\n0.9\n1.5\n\n0.2\n1.0\n1.6\n\n")
-    found = read(path)[""]
-    assert [list(chain) for chain in found.chains] == [pytest.approx([0.8, 0.6])] * 2
-    assert "a number is missing in line 5, which is left out and divides the series" in found.notes
+    recording = read(path)[""]
+    assert [list(chain) for chain in recording.chains] == [pytest.approx([0.8, 0.6])] * 2
+    assert (
+        "a number is missing in line 5, which is left out and divides the series" in recording.notes
+    )
 
 
 def test_a_ball_that_is_held_and_lies_at_last_is_followed_in_between(tmp_path):
@@ -663,9 +668,9 @@ def test_a_ball_that_is_held_and_lies_at_last_is_followed_in_between(tmp_path):
     lying = [f"{t:.4f},0" for t in FRAMES[-1] + np.arange(1, 61) / 60]
     path = tmp_path / "track.csv"
     path.write_text("\n".join(["t,y", *held, track(), *lying]))
-    found = fit(path)
-    assert np.abs(found.impacts.restitution - 0.82).max() < 1e-3
-    assert len(found.impacts.speed) == 6
+    fitted = fit(path)
+    assert np.abs(fitted.impacts.restitution - 0.82).max() < 1e-3
+    assert len(fitted.impacts.speed) == 6
 
 
 def test_rounded_times_of_a_camera_are_those_of_even_frames(tmp_path):
@@ -712,10 +717,10 @@ def test_runs_side_by_side_are_recordings(headings, tmp_path):
     second = [*track(shown=lambda y: 0.5 * y).split("\n")[:-40], *[","] * 40]
     rows = [f"{one},{two}" for one, two in zip(first, second, strict=True)]
     path.write_text("\n".join([headings, *rows]))
-    found = fit(path)
-    assert len(found.impacts.speed) == 10
-    assert np.abs(found.impacts.restitution - 0.82).max() < 1e-3
-    assert not any("is missing" in note for note in found.notes)
+    fitted = fit(path)
+    assert len(fitted.impacts.speed) == 10
+    assert np.abs(fitted.impacts.restitution - 0.82).max() < 1e-3
+    assert not any("is missing" in note for note in fitted.notes)
 
 
 def test_runs_have_a_time_of_their_own_or_one_of_all(tmp_path):
@@ -739,8 +744,8 @@ def test_an_interval_of_0_is_an_end_and_no_flight(tmp_path):
     """Only behind the last event: within a series it is refused."""
     path = tmp_path / "stopwatch.csv"
     path.write_text("run,interval (s)\n1,0.9\n1,0.72\n1,0\n2,0.9\n2,0.72\n2,0")
-    found = fit(path)
-    assert len(found.impacts.speed) == 2 and not any("missing" in each for each in found.notes)
+    fitted = fit(path)
+    assert len(fitted.impacts.speed) == 2 and not any("missing" in note for note in fitted.notes)
     path.write_text("interval (s)\n0.9\n0\n0.72")
     with pytest.raises(Refused, match="line 3: a time of 0 s"):
         fit(path)
@@ -752,9 +757,9 @@ def test_a_label_that_is_typed_by_hand_is_read(tmp_path, typed_label):
     path = tmp_path / "labels.txt"
     exported = [f"{t:.6f}\t{t:.6f}\t{i}" for i, t in enumerate(TIMES)]
     path.write_text("\n".join([typed_label, *exported[1:]]))
-    found = fit(path)
-    assert found.restitution == pytest.approx(0.82, abs=1e-6)
-    assert not any("not used" in each for each in found.notes)
+    fitted = fit(path)
+    assert fitted.restitution == pytest.approx(0.82, abs=1e-6)
+    assert not any("not used" in note for note in fitted.notes)
 
 
 def test_numbers_are_read_alike_by_command_line_and_column(typed, tmp_path):
@@ -829,11 +834,13 @@ def test_a_spoiled_film_holds_r_with_less_than_three_times_the_width_of_a_clean_
         rng = np.random.default_rng(seed)
         y = np.array([position(t) for t in FRAMES]) + 2e-3 * rng.normal(size=len(FRAMES))
         spoiled = spoil(y, rng.random(len(y)))
-        clean, found = (fit({"t (s)": FRAMES, "y (m)": np.round(each, 4)}) for each in (y, spoiled))
+        clean, fitted = (
+            fit({"t (s)": FRAMES, "y (m)": np.round(positions, 4)}) for positions in (y, spoiled)
+        )
         assert not any("left out" in note for note in clean.notes)
-        assert any(said in note for note in found.notes)
-        holds.append(found.interval[0] < 0.82 < found.interval[1])
-        widths.append((np.ptp(found.interval), np.ptp(clean.interval)))
+        assert any(said in note for note in fitted.notes)
+        holds.append(fitted.interval[0] < 0.82 < fitted.interval[1])
+        widths.append((np.ptp(fitted.interval), np.ptp(clean.interval)))
     wide, narrow = np.median(widths, axis=0)
     # Of twelve intervals of 95 %, fewer than nine hold r in one of 5,000 cases.
     assert wide < 3 * narrow and sum(holds) >= 9
@@ -842,7 +849,7 @@ def test_a_spoiled_film_holds_r_with_less_than_three_times_the_width_of_a_clean_
 def test_rounded_positions_near_a_top_are_no_copies():
     """Positions in whole pixels repeat where a ball turns; beside a copy it moves on."""
     t = np.arange(0, TIMES[-1] - 0.05, 1 / 240)
-    y = np.round([700 - 500 * position(each) for each in t])
+    y = np.round([700 - 500 * position(time) for time in t])
     assert not copies(t, y, 1.0).any()
     y[101::2] = y[100::2][: len(y[101::2])]
     assert copies(t, y, 1.0)[101::2].sum() > 100 and not copies(t, y, 1.0)[100::2].any()
@@ -857,10 +864,10 @@ def test_copies_that_are_tracked_one_by_one_are_left_out(shown):
     widths = []
     for seed in range(7):
         y = np.round(frames + 3e-3 * np.random.default_rng(seed).normal(size=len(t)), 4)
-        found, clean = (fit({"t (s)": t[::n], "y (m)": y[::n]}) for n in (1, shown))
-        assert any(COPIES in note for note in found.notes) == (shown > 1)
-        assert abs(found.restitution - 0.82) < np.ptp(found.interval)
-        widths.append((np.ptp(found.interval), np.ptp(clean.interval)))
+        fitted, clean = (fit({"t (s)": t[::n], "y (m)": y[::n]}) for n in (1, shown))
+        assert any(COPIES in note for note in fitted.notes) == (shown > 1)
+        assert abs(fitted.restitution - 0.82) < np.ptp(fitted.interval)
+        widths.append((np.ptp(fitted.interval), np.ptp(clean.interval)))
     copied, once = np.median(widths, axis=0)
     assert copied < 2 * once
 
@@ -868,7 +875,7 @@ def test_copies_that_are_tracked_one_by_one_are_left_out(shown):
 def film(rate, noise, hidden=0.0):
     """Return the columns of a film in which the ball is not seen below a height in m."""
     t = np.arange(0, TIMES[-1] - 0.05, 1 / rate)
-    y = np.array([position(each) for each in t])
+    y = np.array([position(time) for time in t])
     y = np.where(y < hidden, math.nan, y + noise * np.random.default_rng(7).normal(size=len(t)))
     return {"t (s)": np.round(t, 5), "y (m)": np.round(y, 4)}
 
@@ -877,15 +884,15 @@ def film(rate, noise, hidden=0.0):
 @pytest.mark.parametrize("hidden", [0.0, 0.02, 0.08, 0.2])
 def test_a_film_of_more_frames_is_worth_more(hidden, noise):
     """With a hidden floor 120 frames a second left one impact of four, and 240 none."""
-    found = [fit(film(rate, noise, hidden)) for rate in (60, 120, 240, 480, 960)]
-    counts = [len(each.impacts.speed) for each in found]
+    fits = [fit(film(rate, noise, hidden)) for rate in (60, 120, 240, 480, 960)]
+    counts = [len(fitted.impacts.speed) for fitted in fits]
     assert counts == sorted(counts) and counts[0] > 1
-    widths = [np.ptp(each.interval) for each in found]
+    widths = [np.ptp(fitted.interval) for fitted in fits]
     # One interval has an error of its width, of four impacts about a third.
     assert widths[-1] < 0.75 * widths[0] or counts[0] < 3
-    for each in found:
-        assert each.restitution == pytest.approx(0.82, abs=np.ptp(each.interval))
-        assert not any("copies" in note for note in each.notes)
+    for fitted in fits:
+        assert fitted.restitution == pytest.approx(0.82, abs=np.ptp(fitted.interval))
+        assert not any("copies" in note for note in fitted.notes)
 
 
 def test_a_bounce_that_is_not_seen_is_no_impact():
@@ -893,9 +900,9 @@ def test_a_bounce_that_is_not_seen_is_no_impact():
     columns = film(240, 5e-4)
     t = columns["t (s)"]
     columns["y (m)"][(t > TIMES[1] - 0.05) & (t < TIMES[2] + 0.05)] = math.nan
-    found = fit(columns)
-    assert "positions are missing around it for so long" in str(found.notes)
-    assert np.abs(found.impacts.restitution - 0.82).max() < 0.01
+    fitted = fit(columns)
+    assert "positions are missing around it for so long" in str(fitted.notes)
+    assert np.abs(fitted.impacts.restitution - 0.82).max() < 0.01
 
 
 def test_a_tracker_that_jumps_to_another_ball_is_named():

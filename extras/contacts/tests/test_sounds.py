@@ -94,10 +94,10 @@ def agree(sound, times, r):
     # A constant delay changes no interval.
     assert np.abs(late - np.median(late)).max() < 1e-3
     readings = {"time (s)": [f"{t:.6f}" for t in heard.times]}
-    found = fit(readings, resolution=heard.resolution)
+    fitted = fit(readings, resolution=heard.resolution)
     true = fit({"time (s)": times[: len(heard.times)]})
-    assert found.restitution == pytest.approx(true.restitution, abs=5e-3)
-    return found.interval[0] < r < found.interval[1]
+    assert fitted.restitution == pytest.approx(true.restitution, abs=5e-3)
+    return fitted.interval[0] < r < fitted.interval[1]
 
 
 @pytest.mark.parametrize("kind", DISTURBED)
@@ -247,7 +247,9 @@ def test_labels_are_written_and_read_again(typed, drop):
     again = typed(f"fit {drop.with_suffix('.txt')} --resolution {resolution}µs")[1]
     assert again.splitlines()[0] in lines
     labels = drop.with_suffix(".txt").read_text().splitlines()
-    assert all(re.fullmatch(rf"(\d+\.\d{{6}})\t\1\t{i}", each) for i, each in enumerate(labels, 1))
+    assert all(
+        re.fullmatch(rf"(\d+\.\d{{6}})\t\1\t{i}", label) for i, label in enumerate(labels, 1)
+    )
     # A line of the labels, and not of a table that nobody sees.
     out = typed(f"fit {drop} --leave-out 1")[1]
     assert f"{len(labels) - 3} impacts at" in out
@@ -256,9 +258,11 @@ def test_labels_are_written_and_read_again(typed, drop):
 def test_a_sound_is_a_recording_in_python_and_in_a_pipe(typed, drop):
     """They said that it is no text, and how to convert it into a sound."""
     of_file = typed(f"fit {drop}")[1]
-    found = fit(drop)
-    assert found.result.split(": ")[1] in of_file
-    assert any(note.startswith("heard: ") and "another fall: from " in note for note in found.notes)
+    fitted = fit(drop)
+    assert fitted.result.split(": ")[1] in of_file
+    assert any(
+        note.startswith("heard: ") and "another fall: from " in note for note in fitted.notes
+    )
     code = "from bouncing_ball_contacts.cli import run; run()"
     piped = subprocess.run(
         [sys.executable, "-c", code, "fit", "-"],
@@ -266,13 +270,13 @@ def test_a_sound_is_a_recording_in_python_and_in_a_pipe(typed, drop):
         capture_output=True,
         check=True,
     )
-    assert found.result.split(": ")[1] in piped.stdout.decode()
+    assert fitted.result.split(": ")[1] in piped.stdout.decode()
 
 
 def test_the_picture_has_numbers_and_an_axis(typed, drop):
     typed(f"fit {drop}")
     picture = ElementTree.fromstring(drop.with_suffix(".svg").read_text())
-    texts = [each.text for each in picture.iter() if each.text and each.text.strip()]
+    texts = [element.text for element in picture.iter() if element.text and element.text.strip()]
     count = len(drop.with_suffix(".txt").read_text().splitlines())
     assert {*map(str, range(1, count + 1)), "0.6 s", "1.0 s"} <= set(texts)
     assert len(drop.with_suffix(".svg").read_text()) < 1e6
@@ -303,6 +307,6 @@ def test_labels_that_a_person_corrected_are_kept(typed, drop):
 
 
 def test_what_is_heard_is_in_json(typed, drop):
-    found = json.loads(typed(f"fit {drop} --json")[1])
-    assert found["heard"]["times"][0] == pytest.approx(0.6, abs=1e-3)
-    assert found["heard"]["notes"] and 0 < found["heard"]["resolution"] < 1e-3
+    answer = json.loads(typed(f"fit {drop} --json")[1])
+    assert answer["heard"]["times"][0] == pytest.approx(0.6, abs=1e-3)
+    assert answer["heard"]["notes"] and 0 < answer["heard"]["resolution"] < 1e-3

@@ -44,12 +44,12 @@ CASES = [
 
 def body(shape, size, mass, height):
     if shape == "plane":
-        found = pybullet.createCollisionShape(pybullet.GEOM_PLANE)
+        collision_shape = pybullet.createCollisionShape(pybullet.GEOM_PLANE)
     elif shape == "ball":
-        found = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=size)
+        collision_shape = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=size)
     else:
-        found = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[size] * 3)
-    return pybullet.createMultiBody(mass, found, basePosition=[0, 0, height])
+        collision_shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[size] * 3)
+    return pybullet.createMultiBody(mass, collision_shape, basePosition=[0, 0, height])
 
 
 def met(shapes, size, step, parameters, gap, friction):
@@ -63,8 +63,8 @@ def met(shapes, size, step, parameters, gap, friction):
     above, below = shapes.split(", ")
     one = body(above, size, 1.0, size + gap)
     other = body(below, 9.0, 0, 0.0 if below == "plane" else -9.0)
-    for each in (one, other):
-        pybullet.changeDynamics(each, -1, **parameters, lateralFriction=friction**0.5)
+    for body_id in (one, other):
+        pybullet.changeDynamics(body_id, -1, **parameters, lateralFriction=friction**0.5)
     if friction:
         pybullet.resetBaseVelocity(one, [SLIDE, 0, 0])
     heights = [gap]
@@ -95,13 +95,13 @@ def table(friction):
     rows = []
     for shapes, size, step, parameters in CASES:
         asked = dict(mass=1.0, radius=size, speed=SPEED, points=4 if "box, " in shapes else 1)
-        found = diagnose(Bounce(**asked), "pybullet", parameters, step)
+        diagnosis = diagnose(Bounce(**asked), "pybullet", parameters, step)
         height = SPEED**2 / (2 * G)
         measured = [
             met(shapes, size, step, parameters, height + SPEED * step * share, friction)
             for share in np.linspace(0, 1, 16)
         ]
-        low, mean, high = found.outcome.restitution
+        low, mean, high = diagnosis.outcome.restitution
         agrees = low - 2e-3 <= min(measured) and max(measured) <= high + 2e-3
         agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
         given = ", ".join(f"{name} = {value:g}" for name, value in parameters.items())

@@ -291,7 +291,7 @@ def by_node(name, text, drops, radius, steps, kind=BALL, **more):
     if node is None:
         raise ModuleNotFoundError("Node.js", name="Node.js")
     drop = dict(engine=name, text=text, radius=radius, steps=steps, **kind._asdict(), **more)
-    jobs = json.dumps([{**drop, "drop": float(each)} for each in drops])
+    jobs = json.dumps([{**drop, "drop": float(height)} for height in drops])
     # Node.js looks for packages beside a program: here in the working folder.
     with tempfile.NamedTemporaryFile(suffix=".mjs", dir=".") as program:
         program.write(FILE.with_suffix(".mjs").read_bytes())
@@ -365,8 +365,14 @@ def main():
                 r, rate, drop, radius = map(float, case)
                 run = functools.partial(ENGINES[of], **more)
                 text = text_of(of, r, 1 / rate, threshold)
-                found = dropped(run, text, 1 / rate, drop, radius)
-                print(name, *case, *(f"{each:.4f}" for each in found), sep=",", flush=True)
+                restitutions = dropped(run, text, 1 / rate, drop, radius)
+                print(
+                    name,
+                    *case,
+                    *(f"{restitution:.4f}" for restitution in restitutions),
+                    sep=",",
+                    flush=True,
+                )
         except ImportError as missing:
             print(f"{name}: {missing.name} is not installed", file=sys.stderr)
 

@@ -253,7 +253,7 @@ def cells(case, rub):
     )
     rubs = {"friction": rub.friction} if is_told else {}
     differs = None if other == one else {**(other or {}), **rubs}
-    found = diagnose(BALL, name, {**one, **rubs}, step, other=differs)
+    diagnosis = diagnose(BALL, name, {**one, **rubs}, step, other=differs)
     way = math.sqrt(2 * G * HEIGHT) * step
     measured = []
     for height in HEIGHT + way * np.linspace(0, 1, 16):
@@ -263,23 +263,23 @@ def cells(case, rub):
     last = heights[-200:]
     is_still = np.ptp(last) < 1e-4
     rest = -float(np.mean(last)) if is_still else math.nan
-    low, mean, high = found.outcome.restitution
+    low, mean, high = diagnosis.outcome.restitution
     least, most = low, high
-    if rub.slide and "stiffness" in found.numbers:
+    if rub.slide and "stiffness" in diagnosis.numbers:
         problem = Problem(replace(BALL, restitution=mean), ENGINES[name])
-        least, most = problem.promised(found.outcome)
+        least, most = problem.promised(diagnosis.outcome)
     agrees = least - 1e-3 <= min(measured) and max(measured) <= most + 1e-3
     if (least, most) == (low, high):
         # The mean is over 16 instants here, and over neighbouring steps in a diagnosis.
         agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
     # Without a threshold the ball never comes to rest, and a depth may be too small.
-    has_rest = bool(found.outcome.rest)
-    lies = not has_rest or np.isclose(rest, found.outcome.rest, rtol=0.02)
+    has_rest = bool(diagnosis.outcome.rest)
+    lies = not has_rest or np.isclose(rest, diagnosis.outcome.rest, rtol=0.02)
     agrees &= not is_still or bool(lies)
     table = "the same" if other is one else in_words(other)
     texts = [name, in_words(one), table, f"{step * 1e3:.4g}", f"{low:.4f} to {high:.4f}"]
     texts += [f"{min(measured):.4f} to {max(measured):.4f}"]
-    rests = (found.outcome.rest, rest) if has_rest else (math.nan, math.nan)
+    rests = (diagnosis.outcome.rest, rest) if has_rest else (math.nan, math.nan)
     texts += ["–" if math.isnan(depth) else f"{depth * 1e3:.4g}" for depth in rests]
     return texts, agrees
 

@@ -76,10 +76,10 @@ MASSES = [
 def answered(case, engine):
     """Return the answer whose lines are pasted; None if there is none."""
     try:
-        found = design(case.bounce, engine, case.step)
+        answer = design(case.bounce, engine, case.step)
     except Refused:
         return None
-    return next((each for each in (found, *found.also) if each.snippet), None)
+    return next((candidate for candidate in (answer, *answer.also) if candidate.snippet), None)
 
 
 def by_spring(name, answer):
@@ -98,16 +98,16 @@ def by_number(name, answer):
     if "turn" in BY_NUMBER[name].either[0]:
         # Half the angle between two corners of the coarsest polygon, which has ten.
         turns = [{"turn": float(turn)} for turn in np.linspace(0, math.pi / 10, 4)]
-    found = []
+    restitutions = []
     body = engine_drops.Body(mass=bounce.mass)
     for turn in turns:
         run = functools.partial(engine_drops.ENGINES[name], **turn)
         heights = run(answer.snippet, drops, bounce.size, steps, body)
-        found += [
+        restitutions += [
             math.sqrt(engine_runs.rebound(column) / drop)
             for column, drop in zip(heights.T, drops, strict=True)
         ]
-    return min(found), max(found)
+    return min(restitutions), max(restitutions)
 
 
 def measured(name, case, engine, run):
@@ -126,15 +126,15 @@ def measured(name, case, engine, run):
 
 def pasted(name, case, engine, run):
     """Return the cells of a row of pasted.csv but the first."""
-    found, _ = measured(name, case, engine, run)
+    cells, _ = measured(name, case, engine, run)
     given = f"r = {case.restitution}, {case.height:g} m, {case.radius:g} m, {case.step or '–'}"
-    return [case.name, given, *found]
+    return [case.name, given, *cells]
 
 
 def of_masses(name, case, engine, run):
     """Return the cells of a row of masses.csv but the first."""
-    found, written = measured(name, case, engine, run)
-    return [f"{case.mass:g}", f"{case.radius:g}", f"{case.height:g}", written, *found]
+    cells, written = measured(name, case, engine, run)
+    return [f"{case.mass:g}", f"{case.radius:g}", f"{case.height:g}", written, *cells]
 
 
 FOUND = ["step, ms", "r promised", "r in the engine", "promise"]
@@ -154,7 +154,7 @@ def plans(table):
         if table == "masses":
             cases = MASSES
         # A ball rises to the skin, however low r is.
-        cases = [each._replace(height=each.height + 2 * row.skin) for each in cases]
+        cases = [case._replace(height=case.height + 2 * row.skin) for case in cases]
         if name in engine_drops.ENGINES:
             yield name, name, by_number, cases
         else:
@@ -186,10 +186,10 @@ def ran(table):
                 missing[name] = f"{absent.name} is not installed"
                 break
             print(" | ".join(rows[-1]), flush=True)
-    found = {row[0] for row in rows}
+    names = {row[0] for row in rows}
     for name, why in missing.items():
         print(f"Not run: {name}, because {why}.")
-        if name not in found:
+        if name not in names:
             rows.append([name, why, *[""] * (len(head) - 3), NOT_RUN])
     save(table, head, rows)
     return sum(row[-1] == KEPT[False] for row in rows)

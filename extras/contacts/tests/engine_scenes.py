@@ -137,18 +137,18 @@ def restitution(trial, motion):
 def run(engine, scene):
     """Return the design, least and greatest r or the creep in m/s, and the depth over the size."""
     bounce = tuple(scene.bounce.items())
-    found = _designed(engine, bounce, scene.step, scene.friction)
-    wanted = found.bounce
-    h, speed = found.time_step, wanted.impact_speed
-    deepest_said = max(found.outcome.depth, default=0.0) or speed * h
+    answer = _designed(engine, bounce, scene.step, scene.friction)
+    wanted = answer.bounce
+    h, speed = answer.time_step, wanted.impact_speed
+    deepest_said = max(answer.outcome.depth, default=0.0) or speed * h
     g = wanted.gravity
     on = engine_runs.RUNS[engine]
     if "slope" in scene.how:
         steps = int(1 / h)
-        trial = engine_runs.Trial(found, "box", 0.0, 0.0, steps, g, scene.friction, **scene.how)
+        trial = engine_runs.Trial(answer, "box", 0.0, 0.0, steps, g, scene.friction, **scene.how)
         x = on(trial).poses[:, 0]
         creep = float(np.ptp(x[steps // 2 :]) / (0.5 - h))
-        return found, (creep, creep), math.nan
+        return answer, (creep, creep), math.nan
     measured = []
     deepest = 0.0
     for share in (np.arange(INSTANTS) + 0.5) / INSTANTS:
@@ -161,27 +161,27 @@ def run(engine, scene):
         seconds = gap / speed + 6 * deepest_said / speed + 0.3 * wanted.size / (0.2 * speed)
         steps = int(seconds / h) + 20
         trial = engine_runs.Trial(
-            found, scene.shape, gap, start, steps, g, scene.friction, **scene.how
+            answer, scene.shape, gap, start, steps, g, scene.friction, **scene.how
         )
         motion = on(trial)
         measured.append(restitution(trial, motion))
         deepest = max(deepest, -float(motion.heights.min()) / wanted.size)
     if any(map(math.isnan, measured)):
-        return found, (math.nan, math.nan), deepest
-    return found, (min(measured), max(measured)), deepest
+        return answer, (math.nan, math.nan), deepest
+    return answer, (min(measured), max(measured)), deepest
 
 
-def promise(found, scene):
+def promise(answer, scene):
     """Return the least and the greatest r that the answer has for a scene, and whether it promises.
 
     A box has to fall flat on a plane and not to slide, if the answer says so.
     """
-    engine = ENGINES[engine_runs.ROWS.get(found.engine, found.engine)]
-    low, _, high = found.outcome.restitution
-    spin = abs(scene.how.get("spin", 0.0)) * found.bounce.size
-    speed = (scene.how.get("slide", 0.0) + spin) / found.bounce.impact_speed
-    if speed and "stiffness" in found.numbers:
-        low, high = Problem(found.bounce, engine).promised(found.outcome, speed)
+    engine = ENGINES[engine_runs.ROWS.get(answer.engine, answer.engine)]
+    low, _, high = answer.outcome.restitution
+    spin = abs(scene.how.get("spin", 0.0)) * answer.bounce.size
+    speed = (scene.how.get("slide", 0.0) + spin) / answer.bounce.impact_speed
+    if speed and "stiffness" in answer.numbers:
+        low, high = Problem(answer.bounce, engine).promised(answer.outcome, speed)
     is_excepted = scene.shape == "box" and (
         (engine.flat_only and bool(scene.how))
         or (ON_BOXES in engine.not_for and "table" in scene.how)
@@ -191,17 +191,17 @@ def promise(found, scene):
 
 def cells(engine, scene):
     """Return the cells of a scene, and whether the promise is kept (None if there is none)."""
-    found, (least, most), deepest = run(engine, scene)
-    kind = "springs" if "stiffness" in found.numbers else "number"
-    texts = [scene.name, f"{scene.friction:g}", f"{kind}, {1e3 * found.time_step:.4g} ms"]
+    answer, (least, most), deepest = run(engine, scene)
+    kind = "springs" if "stiffness" in answer.numbers else "number"
+    texts = [scene.name, f"{scene.friction:g}", f"{kind}, {1e3 * answer.time_step:.4g} ms"]
     if "slope" in scene.how:
         return [*texts, "–", f"creeps at {1e3 * least:.2g} mm/s", "–"], None
-    low, high, is_promised = promise(found, scene)
+    low, high, is_promised = promise(answer, scene)
     # Three digits are printed.
     kept = bool(low - 5e-4 <= least and most <= high + 5e-4) if is_promised else None
     said = f"{low:.3f} to {high:.3f}" if is_promised else f"({low:.3f} to {high:.3f})"
     does = "lost" if math.isnan(least) else f"{least:.3f} to {most:.3f}"
-    computed = max(found.outcome.depth, default=math.nan) / found.bounce.size
+    computed = max(answer.outcome.depth, default=math.nan) / answer.bounce.size
     return [*texts, said, does, f"{computed:.2f}, {deepest:.2f}"], kept
 
 

@@ -52,22 +52,22 @@ MISSING = {
 """Engines that do not have a shape."""
 
 
-def by_spring(name, floor, found, drops, steps, kind):
+def by_spring(name, floor, answer, drops, steps, kind):
     """Return the heights over a floor in an engine of engine_runs.py."""
-    g = found.bounce.gravity
+    g = answer.bounce.gravity
     run = engine_runs.RUNS[name]
     how = dict(spin=kind.spin, table=floor)
     trials = (
-        engine_runs.Trial(found, kind.shape, drop, 0.0, steps, g, None, **how)
+        engine_runs.Trial(answer, kind.shape, drop, 0.0, steps, g, None, **how)
         for drop in drops.tolist()
     )
     return np.array([run(trial).heights for trial in trials]).T
 
 
-def by_number(run, found, drops, steps, kind):
+def by_number(run, answer, drops, steps, kind):
     """Return the heights above the floor, or above the skins of a box, in engine_drops.py."""
-    skin = 2 * BY_NUMBER[found.engine].skin * (kind.shape == "box")
-    return run(found.snippet, drops + skin, found.bounce.size, steps, kind) - skin
+    skin = 2 * BY_NUMBER[answer.engine].skin * (kind.shape == "box")
+    return run(answer.snippet, drops + skin, answer.bounce.size, steps, kind) - skin
 
 
 def on_floor(name, floor="plane"):
@@ -104,30 +104,30 @@ RUNS = {
 """Engines by the names of rows, and by versions."""
 
 
-def measured(run, found, kind):
+def measured(run, answer, kind):
     """Return the smallest and the largest r of a body that is dropped."""
-    bounce = found.bounce
-    step, speed = found.time_step, bounce.impact_speed
+    bounce = answer.bounce
+    step, speed = answer.time_step, bounce.impact_speed
     # Next to the flights, the contact lasts for the way of some depths.
-    deepest = max(found.outcome.depth, default=0.0)
+    deepest = max(answer.outcome.depth, default=0.0)
     steps = math.ceil((2.6 * speed / bounce.gravity + 8 * deepest / speed) / step) + 6
     instants = np.arange(INSTANTS) / INSTANTS - 0.5
     drops = speed**2 / (2 * bounce.gravity) + speed * step * instants
-    tops = [engine_runs.rebound(column) for column in run(found, drops, steps, kind).T]
+    tops = [engine_runs.rebound(column) for column in run(answer, drops, steps, kind).T]
     r = np.sqrt(np.array(tops) / drops)
     return r.min(), r.max()
 
 
-def promise(found, kind):
+def promise(answer, kind):
     """Return the smallest and the largest r of an answer; a ball that spins slides."""
-    low, _, high = found.outcome.restitution
-    row = BY_NUMBER.get(found.engine)
+    low, _, high = answer.outcome.restitution
+    row = BY_NUMBER.get(answer.engine)
     if row and kind.shape == "box":
-        share = row.skin / found.bounce.drop_height
-        low, high = (math.sqrt((each**2 - share) / (1 - share)) for each in (low, high))
-    along = abs(kind.spin) * found.bounce.size / found.bounce.impact_speed
-    if along and "stiffness" in found.numbers:
-        low, high = Problem(found.bounce, ENGINES[found.engine]).promised(found.outcome, along)
+        share = row.skin / answer.bounce.drop_height
+        low, high = (math.sqrt((r**2 - share) / (1 - share)) for r in (low, high))
+    along = abs(kind.spin) * answer.bounce.size / answer.bounce.impact_speed
+    if along and "stiffness" in answer.numbers:
+        low, high = Problem(answer.bounce, ENGINES[answer.engine]).promised(answer.outcome, along)
     return low, high
 
 
@@ -140,21 +140,21 @@ def table(engine):
     for version, run in RUNS[engine].items():
         for named, (bounce, step) in DESIGNS.items():
             answer = design(Bounce(**bounce, gravity=engine_drops.G), engine, step)
-            found = next(each for each in (answer, *answer.also) if each.snippet)
+            pasted = next(candidate for candidate in (answer, *answer.also) if candidate.snippet)
             excepted = [
                 text
-                for text in found.not_for
+                for text in pasted.not_for
                 if "GEOM_PLANE" not in text or "GEOM_PLANE" in version
             ]
             for shape, kind in SHAPES.items():
                 if engine in MISSING.get(shape, ()):
                     continue
-                low, high = promise(found, kind)
-                least, most = measured(run, found, kind)
+                low, high = promise(pasted, kind)
+                least, most = measured(run, pasted, kind)
                 # Three digits are printed.
                 kept = bool(low - 5e-4 <= least and most <= high + 5e-4)
                 is_excepted = any(re.search(NOT_FOR[shape], text) for text in excepted)
-                texts = [version, named, f"{1e3 * found.time_step:.4g} ms", shape]
+                texts = [version, named, f"{1e3 * pasted.time_step:.4g} ms", shape]
                 ranges = [f"{low:.3f} to {high:.3f}", f"{least:.3f} to {most:.3f}"]
                 rows.append([engine, *texts, *ranges, KEPT[None if is_excepted else kept]])
                 print(" | ".join(rows[-1]), flush=True)

@@ -147,21 +147,21 @@ def label(name, shape, wanted, more):
 def cells(name, shape, wanted, time_step, more, friction):
     """Return the further cells of a row of the table, and whether the engine agrees."""
     engine = ENGINES[name] if more else engine_runs.number_row(name)
-    found = design(Bounce(**wanted, friction=friction), engine, time_step)
-    outcome = here = found.outcome
-    is_spring = "stiffness" in found.numbers
-    problem = Problem(found.bounce, ENGINES[name])
+    answer = design(Bounce(**wanted, friction=friction), engine, time_step)
+    outcome = here = answer.outcome
+    is_spring = "stiffness" in answer.numbers
+    problem = Problem(answer.bounce, ENGINES[name])
     if is_spring:
-        law = problem.law_of(found.parameters, found.time_step)
+        law = problem.law_of(answer.parameters, answer.time_step)
         # The design is for neighbouring steps as well, and the engine has this one.
-        here = problem.outcome(law, found.time_step, exact(offsets(401)))
+        here = problem.outcome(law, answer.time_step, exact(offsets(401)))
     low, _, high = here.restitution
-    slide = found.bounce.impact_speed / 2 if friction and shape == "ball" else 0.0
+    slide = answer.bounce.impact_speed / 2 if friction and shape == "ball" else 0.0
     wider = problem.promised(here, 0.5) if slide and is_spring else (low, high)
-    measured = engine_runs.measure(found, shape, slide)
+    measured = engine_runs.measure(answer, shape, slide)
     at_least, at_most = measured.restitution
     texts = [
-        f"{found.time_step * 1e3:.4g}",
+        f"{answer.time_step * 1e3:.4g}",
         f"{outcome.restitution[0]:.4f} to {outcome.restitution[2]:.4f}",
         f"{low:.4f} to {high:.4f}",
         f"{at_least:.4f} to {at_most:.4f}",

@@ -509,13 +509,13 @@ def curves_of(
     impacts, known = group_means(impacts, known)
     n = len(impacts.log_r)
     unit = impacts.usual if known is None else known
-    each_variance = [np.sum(matrix**2, axis=1) for matrix in impacts.errors(unit)[0]]
-    error = math.sqrt(np.median(np.concatenate(each_variance)))
+    variances_of_series = [np.sum(matrix**2, axis=1) for matrix in impacts.errors(unit)[0]]
+    error = math.sqrt(np.median(np.concatenate(variances_of_series)))
     errors, errors_of_speed = impacts.errors(unit / error)
-    each_eigenvalues, bases = zip(
+    eigenvalues_of_series, bases = zip(
         *(np.linalg.eigh(matrix @ matrix.T) for matrix in errors), strict=True
     )
-    eigenvalues = np.concatenate(each_eigenvalues)
+    eigenvalues = np.concatenate(eigenvalues_of_series)
     ends = np.cumsum(list(map(len, errors)))[:-1]
 
     def in_basis(columns: Array) -> Array:

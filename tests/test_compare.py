@@ -26,7 +26,7 @@ from tests.checkout import ROOT, without_variables_of_git
 from tests.jobs import Named
 
 from carbonelli2011 import variables
-from paper_replication import compare, datasets, provenance
+from paper_replication import acceptance, compare, datasets, differences, provenance, runs
 from paper_replication.drawing import save_picture
 
 pytestmark = pytest.mark.usefixtures("git_of_its_own", "versions_that_are_read_once")
@@ -186,17 +186,17 @@ def run(
 
 
 def report(project, names=(), config=CONFIG, made=MADE):
-    reference = compare.run_in(project.top, "the reference")
-    results = compare.run_in(project.top / "results", "the results")
+    reference = runs.run_in(project.top, "the reference")
+    results = runs.run_in(project.top / "results", "the results")
     main = provenance.main_branch(project.checkout)
-    checkout = compare.Checkout(project, main, config, made)
+    checkout = runs.Checkout(project, main, config, made)
     return compare.compare(project, reference, results, checkout, names)
 
 
 def accept(project, made=MADE):
     """Accept the results; the rules make a page, too, which is no part of the reference."""
     results = project.top / "results"
-    return compare.accept(project, results, [results / file for file in (*made, "index.html")])
+    return acceptance.accept(project, results, [results / file for file in (*made, "index.html")])
 
 
 def printed(comparison):
@@ -415,7 +415,7 @@ def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
 def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     project, monkeypatch, tmp_path
 ):
-    first = compare.run_in(shutil.copytree(project.top / "results", tmp_path / "first"), "first")
+    first = runs.run_in(shutil.copytree(project.top / "results", tmp_path / "first"), "first")
     other = provenance.versions() | {"matplotlib": "9.9"}
     monkeypatch.setattr(provenance, "versions", lambda: other)
     monkeypatch.setattr(compare, "versions", lambda: other)
@@ -427,7 +427,7 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     ]
     assert report(project).status == 0
     # So they are between two runs.
-    second = compare.run_in(project.top / "results", "second")
+    second = runs.run_in(project.top / "results", "second")
     comparison = compare.compare(project, first, second)
     assert (comparison.status, comparison.those("drawn elsewhere").keys()) == (
         0,
@@ -522,7 +522,7 @@ def test_a_new_label_is_named_and_the_values_of_the_others_are_compared():
         for names, values in ((["high"], [1.0]), (["high", "low"], [2.0, 3.0]))
     )
     expected = ["claim low is new", "height 1 → 2 at claim = high (tolerance 1e-09)"]
-    assert [*map(str, compare.differences("claims.nc", old, new))] == expected
+    assert [*map(str, differences.differences("claims.nc", old, new))] == expected
 
 
 def test_a_table_has_a_row_for_each_variable_and_the_rest_is_named():
@@ -533,7 +533,7 @@ def test_a_table_has_a_row_for_each_variable_and_the_rest_is_named():
         xr.Dataset({f"h{n:02}": ("x", values, about) for n in range(12)}, {"x": [1, 2, 4, 8]})
         for values in numbers
     )
-    finding = compare.Finding("differs", compare.differences("a.nc", old, new))
+    finding = compare.Finding("differs", differences.differences("a.nc", old, new))
     first, *rows = finding.lines("a")
     assert first == "a: 12 differences"
     assert rows[:-1] == [f"  h{n:02}  3 of 4  2 → 2.5 at x = 2" for n in range(10)]
@@ -542,12 +542,12 @@ def test_a_table_has_a_row_for_each_variable_and_the_rest_is_named():
 
 def test_the_largest_change_of_whole_numbers_and_undefined_ones():
     old, new = (xr.Dataset({"k": ("x", values)}) for values in ([1, 2, 3], [2, 9, 3]))
-    assert [*map(str, compare.differences("a.nc", old, new))] == [
+    assert [*map(str, differences.differences("a.nc", old, new))] == [
         "k 2 → 9 at x = 1, and 1 more of 3 values"
     ]
     about = {"tolerance": 1e-9, "floor": 1e-3}
     old, new = (xr.Dataset({"k": ("x", [1.0, x], about)}) for x in (np.nan, 2.0))
-    assert [*map(str, compare.differences("a.nc", old, new))] == [
+    assert [*map(str, differences.differences("a.nc", old, new))] == [
         "k nan → 2 at x = 1 (tolerance 1e-09)"
     ]
 
@@ -573,7 +573,7 @@ def test_of_several_workflows_in_a_zip_each_takes_its_own_results(project, tmp_p
     other = replace(project, top=project.top / "extras/other")
     for workflow, folder in ((project, "results"), (other, "extras/other/results")):
         unpacked = tmp_path / folder.replace("/", "-")
-        assert compare.results_of(workflow, Path(file), unpacked) == unpacked / folder
+        assert runs.results_of(workflow, Path(file), unpacked) == unpacked / folder
 
 
 def two_runs(project, tmp_path):
@@ -664,7 +664,7 @@ def test_a_damaged_record_is_named_and_that_of_the_reference_is_mended(project, 
     why = "has the marks of a conflict" if left.startswith("<") else "cannot be read"
     assert f"fig14.png in the results, records/fig14.json {why}" in lines(project)[0]
     record.write_text(before, "utf-8")
-    (project.top / compare.ACCEPTED).write_text(left, "utf-8")
+    (project.top / runs.ACCEPTED).write_text(left, "utf-8")
     assert f"in the reference, figures/accepted.json {why}" in lines(project)[0]
     accept(project)
     assert lines(project) == []
@@ -802,7 +802,7 @@ def test_another_python_alone_changes_no_record(project, monkeypatch):
     commit(project.top)
     run(project)
     accept(project)
-    assert "3.99.0" in (project.top / compare.ACCEPTED).read_text("utf-8")
+    assert "3.99.0" in (project.top / runs.ACCEPTED).read_text("utf-8")
 
 
 @pytest.mark.parametrize("another", [False, True])
@@ -824,7 +824,7 @@ def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_pat
         def move(*paths):
             writes.append(paths)
             if len(writes) == 3:
-                patch.setattr(compare.Path, "unlink", lambda *_, **__: None)
+                patch.setattr(acceptance.Path, "unlink", lambda *_, **__: None)
                 raise KeyboardInterrupt
             shutil.move(*paths)
 
@@ -839,7 +839,7 @@ def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_pat
         killed(attempt)
     while killed(8):
         pass
-    assert [*project.top.glob(compare.BEGUN)] == []
+    assert [*project.top.glob(acceptance.BEGUN)] == []
     assert reference(project) == reference(whole)
 
 
@@ -1083,15 +1083,15 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
     kept = shutil.copytree(project.top, tmp_path / "kept")
     results = project.top / "results"
 
-    checkout = compare.Checkout(today, {}, CONFIG, MADE) if with_reference else None
+    checkout = runs.Checkout(today, {}, CONFIG, MADE) if with_reference else None
 
     def sides(file):
-        runs = (compare.run_in(project.top, "old"), compare.run_in(results, "new"))
-        return compare.side(runs[0], file), compare.side(runs[1], file, checkout)
+        old = runs.run_in(project.top, "old")
+        return runs.side(old, file), runs.side(runs.run_in(results, "new"), file, checkout)
 
     data = compare.finding(*sides("figures/fig14.nc"), checkout, ()).verdict
     differing = ["figures/fig14.nc"] if data == "differs" else []
-    records = (project.top / compare.ACCEPTED, results / f"records/{rule}.json")
+    records = (project.top / runs.ACCEPTED, results / f"records/{rule}.json")
     for old, new, stale in product(STATES, STATES, (False, True)):
         for path in (project.top / file, results / file, *records, project.top / code):
             shutil.copyfile(kept / path.relative_to(project.top), path)
@@ -1106,7 +1106,7 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
         assert (
             finding.verdict != "differs"
             or "edited" not in (old, new)
-            or compare.EDITED in finding.causes
+            or runs.EDITED in finding.causes
         ), situation
         # Only what is fresh and recorded is accepted.
         assert (not pair[1].wrong) == (new == "recorded" and not (stale and with_reference))
@@ -1116,7 +1116,7 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
 def test_all_that_differs_in_what_made_a_file_is_listed(after, main, n, version):
     """A file of code was accepted as "a". Another one stays as it is."""
     old, new = (
-        compare.Side(
+        runs.Side(
             ROOT,
             {},
             record={
@@ -1128,7 +1128,7 @@ def test_all_that_differs_in_what_made_a_file_is_listed(after, main, n, version)
         )
         for code, number, numpy in (("a", 1, "1"), (after, n, version))
     )
-    checkout = compare.Checkout(project_in(ROOT), {"edited": main, "other": "a"})
+    checkout = runs.Checkout(project_in(ROOT), {"edited": main, "other": "a"})
     assert compare.what_differs(old, new, checkout, ()) == (
         {
             kind: [text]
@@ -1175,7 +1175,7 @@ def test_the_reference_declares_a_tolerance_and_gives_its_scale():
     data["b"] = ((), 1.0, {"tolerance": 0.1, "floor": 1.0})
     told = ["b 1 → 1.15 (tolerance 0.1)", "a 1 → 2 at tolerance = 5 (tolerance 0.6)"]
     other = data.assign(a=data.a.copy(data=[2.0]), b=data.b.copy(data=1.15))
-    assert [*map(str, compare.differences("a.nc", data, other))] == told
+    assert [*map(str, differences.differences("a.nc", data, other))] == told
 
 
 @pytest.mark.parametrize(
@@ -1218,7 +1218,7 @@ def test_every_number_of_the_reference_is_compared_with_its_tolerance(path):
 
 def named(path, data, other, names):
     """Those of the variables that a comparison of two datasets names."""
-    return {difference.what for difference in compare.differences(path.name, data, other)} & {
+    return {difference.what for difference in differences.differences(path.name, data, other)} & {
         *names
     }
 
@@ -1248,7 +1248,7 @@ def test_what_is_new_along_each_dimension_of_the_reference_is_told_and_the_rest_
                     {name: (coordinate.dims, less[name].values * (1 + 1e-12), coordinate.attrs)}
                 )
         for pair, what in (((whole, less), "missing"), ((less, whole), "new")):
-            (told,) = compare.differences(path.name, *pair)
+            (told,) = differences.differences(path.name, *pair)
             assert told.what == dim and told.change.endswith(f" is {what}")
         changed = {}
         for name in [name for name in less.data_vars if less[name].dtype.kind == "f"]:
@@ -1259,6 +1259,6 @@ def test_what_is_new_along_each_dimension_of_the_reference_is_told_and_the_rest_
                 changed[name] = (less[name].dims, values, less[name].attrs)
         told = [
             difference.what
-            for difference in compare.differences(path.name, whole, less.assign(changed))
+            for difference in differences.differences(path.name, whole, less.assign(changed))
         ]
         assert told[0] == dim and sorted(told[1:]) == sorted(changed)

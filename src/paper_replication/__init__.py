@@ -13,6 +13,7 @@
     numbers and tables as texts, and the templates that print them
 `origins`, `pages`
     the expression and the dataset behind each number of a text; texts as pages for a browser
-`compare`
-    comparison of results with a reference, or of two runs
+`runs`, `differences`, `compare`, `acceptance`
+    records and files of a run, what differs in the contents of a file, comparison of results with a
+    reference or of two runs, and results that become the reference
 """

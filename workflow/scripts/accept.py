@@ -12,7 +12,7 @@ results = Path(snakemake.log[0]).parents[1]
 with from_source(TOP / "src", TOP / "workflow"):
     from project import PROJECT
 
-    from paper_replication.compare import accept
+    from paper_replication.acceptance import accept
 
     try:
         written = accept(PROJECT, results, snakemake.input)

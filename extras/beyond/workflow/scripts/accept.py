@@ -11,7 +11,7 @@ sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 with from_source(TOP / "src", TOP / "workflow", TOP / "../../src"):
     from project import PROJECT
 
-    from paper_replication.compare import accept
+    from paper_replication.acceptance import accept
 
     try:
         written = accept(PROJECT, Path("results"), snakemake.input)

@@ -1,6 +1,7 @@
 """What the pages show is what the commands print."""
 
 import doctest
+import importlib
 import re
 import runpy
 from decimal import Decimal
@@ -8,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball_contacts import questions, rebounds, units
+import bouncing_ball_contacts
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -73,9 +74,16 @@ def test_the_examples_in_python():
     assert failed == 0 and tried > 10
 
 
-@pytest.mark.parametrize("module", [questions, rebounds, units], ids=lambda module: module.__name__)
+MODULES = [
+    f"bouncing_ball_contacts.{path.stem}"
+    for path in Path(bouncing_ball_contacts.__path__[0]).glob("*.py")
+    if ">>> " in path.read_text("utf-8")
+]
+
+
+@pytest.mark.parametrize("module", MODULES)
 def test_the_examples_of_docstrings(module):
-    failed, tried = doctest.testmod(module)
+    failed, tried = doctest.testmod(importlib.import_module(module))
     assert failed == 0 and tried > 0
 
 

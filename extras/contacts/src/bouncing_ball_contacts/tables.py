@@ -695,7 +695,7 @@ def _read_columns(name: str, headings: list[str], named: Mapping[str, str]) -> d
 
 
 def _decimal(cell: str) -> str:
-    """Return a cell without its error, and with a decimal number for a fraction, feet or a clock.
+    r"""Return a cell without its error, and with a decimal number for a fraction, feet or a clock.
 
     >>> [_decimal(cell) for cell in ("50 ± 0.5 cm", "46 1/2", "6' 2\"", "00:01:02.5")]
     ['50 cm', '46.5', '74 in', '62.5']

@@ -108,8 +108,8 @@ def threshold(ratios: NDArray, error: Error, tolerance: Numbers) -> Threshold:
 
     >>> grid = np.geomspace(1, 1000, 7)
     >>> error = Error(1 / grid, lambda ratio, below, curve: 1 / ratio)
-    >>> found = threshold(grid, error, [0.02, 2.0])
-    >>> found.ratio.round(9).tolist(), found.status.tolist()
+    >>> last = threshold(grid, error, [0.02, 2.0])
+    >>> last.ratio.round(9).tolist(), last.status.tolist()
     ([50.0, nan], ['found', 'within'])
     """
     ratios = ascending(ratios)
@@ -294,8 +294,8 @@ def errors(
         If quantities is no list of names, or if a name, the release, n, r, Λ or ϖ is not allowed.
 
     >>> scan = np.array([10.0, 100.0])
-    >>> found = errors(["bounce_velocity"], 1, 0.65, 1.0, scan, "displacement")
-    >>> found["bounce_velocity"].values.round(3).tolist()
+    >>> velocity = errors(["bounce_velocity"], 1, 0.65, 1.0, scan, "displacement")
+    >>> velocity["bounce_velocity"].values.round(3).tolist()
     [0.061, 0.006]
     """
     ratios = ascending(ratios)

@@ -325,7 +325,7 @@ def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tupl
     - Force release: ϖ² = (1 + √(1 + 8ζ²))/2, where the derivative of Λ_SD² with respect to ϖ²
       vanishes.
 
-    >>> [round(each, 4) for each in lowest_permanent_contact(0.1)]
+    >>> [round(x, 4) for x in lowest_permanent_contact(0.1)]
     [1.0102, 0.199]
     """
     check_ratios(1, zeta)
@@ -344,7 +344,7 @@ def permanent_contact_ratios(amplitude: float, zeta: float) -> tuple[float, floa
     The smaller frequency ratio comes first. Both are NaN if the amplitude is below the minimum of
     Λ_SD. The equations assume the displacement release.
 
-    >>> [round(each, 4) for each in permanent_contact_ratios(0.99, 0.1359)]
+    >>> [round(ratio, 4) for ratio in permanent_contact_ratios(0.99, 0.1359)]
     [0.7225, 9.8116]
     """
     check_ratios(1, zeta)

@@ -170,7 +170,7 @@ def aligned(old: xr.Dataset, new: xr.Dataset) -> tuple[list[Difference], xr.Data
     their coordinates agree within the tolerance.
 
     >>> old, new = (xr.Dataset(coords={"claim": names}) for names in (["high"], ["high", "low"]))
-    >>> [str(each) for one, other in ((old, new), (new, old)) for each in aligned(one, other)[0]]
+    >>> [str(difference) for difference in (*aligned(old, new)[0], *aligned(new, old)[0])]
     ['claim low is new', 'claim low is missing']
     """
     differing = []

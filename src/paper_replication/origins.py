@@ -111,8 +111,8 @@ def origins(
     messages. Raises TemplateSyntaxError for a statement in which a name could be missed: another
     spelling than those of `STATEMENT`, or a second definition of a name.
 
-    >>> each, = origins("{% set far = fig14.n %}{{ far.max() | fixed(2) }}", ["fig14"])
-    >>> each.names, [*each.datasets]
+    >>> number, = origins("{% set far = fig14.n %}{{ far.max() | fixed(2) }}", ["fig14"])
+    >>> number.names, [*number.datasets]
     ({'far': 'far = fig14.n'}, ['fig14'])
     """
     known = {"given": Origin("", {}, datasets)}

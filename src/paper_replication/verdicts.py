@@ -77,7 +77,7 @@ def against_print(computed: float, printed: str) -> Comparison:
 
     A number halfway between two roundings counts as rounding to either.
 
-    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2556, np.nan)]
+    >>> [against_print(x, "0.255").verdict for x in (0.2545, 0.2556, np.nan)]
     ['reproduced', 'not reproduced', 'not asked']
     """
     if np.isnan(computed):

@@ -173,13 +173,13 @@ def look_of(kind: str) -> Look:
     return {"linestyle": KINDS[kind], "linewidth": 0.9} | (crosses if kind == "unstable" else {})
 
 
-def named(name: str, kinds: np.ndarray) -> str:
+def with_kinds(name: str, kinds: np.ndarray) -> str:
     """Return the name of a curve, with the kind of its orbits if none of them is stable.
 
     Examples
     --------
-    >>> named("ball", np.array("unstable")), named("ball", np.array(["stable", "unstable"]))
-    ('ball (unstable)', 'ball')
+    >>> [with_kinds("ball", np.array(kinds)) for kinds in ("unstable", ["stable", "unstable"])]
+    ['ball (unstable)', 'ball']
     """
     present = np.unique(kinds)
     return name if "stable" in present else f"{name} ({', '.join(present)})"
@@ -189,7 +189,7 @@ def curve(axes: Axes, x: NDArray, y: NDArray, kinds: np.ndarray, **look: Any) ->
     """Draw a line whose parts have the style of the `kinds` of their orbits.
 
     The first stable part has the label, and the first part of each other kind the name of this
-    kind. If no part is stable, the label has the kind (`named`).
+    kind. If no part is stable, the label has the kind (`with_kinds`).
     """
     shown = [part for part in pieces(kinds) if np.isfinite(y[part]).any()]
     if not shown:  # the legend has its name
@@ -201,7 +201,7 @@ def curve(axes: Axes, x: NDArray, y: NDArray, kinds: np.ndarray, **look: Any) ->
         kind = kinds[part.start]
         text = None if kind in labelled else kind
         if part == parts[0] and "label" in look:
-            text = named(look["label"], kinds[np.isfinite(y)])
+            text = with_kinds(look["label"], kinds[np.isfinite(y)])
         labelled.add(kind)
         axes.plot(x[part], y[part], **(look | look_of(kind) | {"label": text}))
 

@@ -34,13 +34,13 @@ from carbonelli2011.curves import (
     look_of,
     mark_look,
     mark_special,
-    named,
     number_ratios,
     parted,
     restitution_branch,
     right_end,
     spring_damper_branch,
     title,
+    with_kinds,
 )
 from carbonelli2011.motion import motion, movement
 from paper_replication.datasets import other_parameters, parameters
@@ -152,7 +152,7 @@ def draw_ball(axes: Axes, time: xr.DataArray, data: xr.Dataset) -> None:
     """Draw the height of the ball on the orbit of a dataset."""
     kind = str(kinds_of(data))
     look: Look = {"color": "black"} | look_of(kind)
-    axes.plot(time, data.ball, label=named("ball $z$", np.array(kind)), **look)
+    axes.plot(time, data.ball, label=with_kinds("ball $z$", np.array(kind)), **look)
 
 
 def fig03(data: xr.Dataset) -> Figure:
@@ -311,13 +311,13 @@ def fig13(data: xr.Dataset) -> Figure:
     entries = {
         r"start of contact, $(\varphi,\,z'_i)$": sample(**start),
         r"end of contact, $(\varphi+\tau_b,\,z'_b)$": sample(**end),
-        named("restitution model", kinds_of(data, "restitution_")): sample(**star),
+        with_kinds("restitution model", kinds_of(data, "restitution_")): sample(**star),
     }
     exists = data.phase.notnull().values
     # A single case needs no legend of colours.
     if len(names) > 1:
         for name, colour, kinds, known in zip(names, shades, kinds_of(data), exists, strict=True):
-            key = named(name, kinds[known]) if known.any() else name
+            key = with_kinds(name, kinds[known]) if known.any() else name
             entries[key] = sample(color=colour, marker="s", linestyle="none")
     shown = kinds_of(data)[exists]
     others = [kind for kind in KINDS if kind != "stable" and kind in shown]
@@ -426,7 +426,7 @@ def fig12(data: xr.Dataset) -> Figure:
     time, table = three_cycles(data, data.table)
     axes.plot(time, table, color=TABLE, linewidth=0.8)
     rigid = kinds_of(data, "restitution_")
-    broad: Look = {"color": "0.72", "label": named("restitution model", rigid)}
+    broad: Look = {"color": "0.72", "label": with_kinds("restitution model", rigid)}
     broad |= look_of(str(rigid)) | {"linewidth": 3.4}
     for part in (axes, summit):
         part.plot(*three_cycles(data, data.restitution_ball), **broad)
@@ -456,7 +456,7 @@ def draw_contacts(axes: Axes, data: xr.Dataset) -> None:
         else:
             kind = str(kinds_of(orbit))
         look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 100}
-        look |= look_of(kind) | {"label": named(name, np.array(kind))}
+        look |= look_of(kind) | {"label": with_kinds(name, np.array(kind))}
         axes.plot(*three_cycles(data, orbit.ball), **look)
 
 
@@ -710,7 +710,7 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
         axes.axvline(threshold, **GUIDE)
         value = rf"$\varpi_{{{name},{percent}\%}}={latex_number(threshold)}$"
         after = np.searchsorted(ratio, threshold)
-        value = named(value, kinds[max(after - 1, 0) : after + 1])
+        value = with_kinds(value, kinds[max(after - 1, 0) : after + 1])
         axes.plot(threshold, tolerance, "o", color="black", markersize=4, label=value)
     axes.set(yscale="log", ylabel="relative error")
     axes.set_ylim(bottom=bottom)
@@ -907,7 +907,7 @@ def draw(name: str, *data: xr.Dataset, own: Mapping[str, Any] | None = None) -> 
     for dataset in data:
         orbits = dataset.get("phase", dataset.get("ball"))
         if orbits is not None and orbits.isnull().all():
-            raise Empty(f"{name} would be empty: {without_orbit(dataset)}")
+            raise Empty(f"{name} would be empty: {empty_because(dataset)}")
     with style(own):
         return FIGURES[name](*data)
 
@@ -917,7 +917,7 @@ def moving(name: str, *data: xr.Dataset) -> str:
     return movement(*data) if name == "motion" else ""
 
 
-def without_orbit(data: xr.Dataset) -> str:
+def empty_because(data: xr.Dataset) -> str:
     """Say of which parameters there is no orbit, and which amplitudes have one."""
     given = parameters(data)
     names = ("n", "restitution", "amplitude", "cases", "frequency_ratio", "amplitude_max")

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
 
-from carbonelli2011.curves import TABLE, kinds_of, label, named, title
+from carbonelli2011.curves import TABLE, kinds_of, label, title, with_kinds
 from carbonelli2011.paper import of_paper
 from paper_replication.datasets import parameters
 from paper_replication.drawing import POINTS, WIDTH, Look, colours, panels
@@ -81,9 +81,9 @@ def frames(data: xr.Dataset) -> xr.Dataset:
             "name": (
                 "ball",
                 [
-                    named("rigid", kinds_of(given, "restitution_")),
+                    with_kinds("rigid", kinds_of(given, "restitution_")),
                     *(
-                        named(label(frequency_ratio=ratio), np.array(kind))
+                        with_kinds(label(frequency_ratio=ratio), np.array(kind))
                         for ratio, kind in zip(ratios, kinds_of(given), strict=True)
                     ),
                 ],

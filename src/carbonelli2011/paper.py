@@ -72,7 +72,7 @@ def on_contacts(**given) -> dict:
     return {**given, "release": "displacement"}
 
 
-def cases(*pairs: tuple[float, float]) -> Among:
+def curves(*pairs: tuple[float, float]) -> Among:
     """Return curves of (r, Λ)."""
     return Among("case", [{"restitution": r, "amplitude": amplitude} for r, amplitude in pairs])
 
@@ -96,11 +96,11 @@ PARAMETERS: dict[str, dict] = {
     "fig03": {"n": Among("n", [1, 2, 3, 4, 5]), "restitution": 0.85},
     "fig05": on_contacts(
         n=1,
-        cases=cases((1.0, 0.8), (0.85, 1.0), (0.65, 1.0), (0.1, 2.6)),
+        cases=curves((1.0, 0.8), (0.85, 1.0), (0.65, 1.0), (0.1, 2.6)),
         frequency_ratio=ALONG_RATIO,
     ),
     "fig06": on_contacts(
-        n=1, cases=cases((0.65, 0.7), (0.65, 1.0), (0.65, 1.2)), frequency_ratio=ALONG_RATIO
+        n=1, cases=curves((0.65, 0.7), (0.65, 1.0), (0.65, 1.2)), frequency_ratio=ALONG_RATIO
     ),
     "fig08": on_contacts(n=1, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
     "fig09": on_contacts(n=2, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),

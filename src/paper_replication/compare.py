@@ -31,7 +31,14 @@ import xarray as xr
 from PIL import Image, ImageColor
 
 from paper_replication.datasets import Project, read, write
-from paper_replication.differences import Difference, about, changes, differences, sentences, shown
+from paper_replication.differences import (
+    Difference,
+    about,
+    changes,
+    differences,
+    printable,
+    sentences,
+)
 from paper_replication.provenance import (
     PACKAGES,
     content,
@@ -180,7 +187,7 @@ def of_product(
         return Finding("follows", sentences=pairs)
     if old.contents is None and drawn_elsewhere(old.record, new.record, checkout):
         return Finding("drawn elsewhere")
-    if rounded(old, new, checkout):
+    if differs_by_rounding(old, new, checkout):
         return Finding("agrees")
     return Finding("differs", lines, what_differs(old, new, checkout, differing), pairs)
 
@@ -192,7 +199,7 @@ def drawn_elsewhere(old: Mapping, new: Mapping, checkout: Checkout | None) -> bo
     return len(drawn_by) == 2 and {*new["code"].items()} <= known
 
 
-def rounded(old: Side, new: Side, checkout: Checkout | None) -> bool:
+def differs_by_rounding(old: Side, new: Side, checkout: Checkout | None) -> bool:
     """Whether files differ only because numbers of their dataset, which agree, are rounded
     differently: the same code made both files, or today's code makes that of the reference again.
     """
@@ -296,7 +303,7 @@ class Report:
 
     def printed(self, template: str, **more: Any) -> str:
         """The report as a template prints it, with invisible characters escaped."""
-        printing = environment(Path(__file__).parent).overlay(finalize=shown)
+        printing = environment(Path(__file__).parent).overlay(finalize=printable)
         return printing.get_template(template).render(report=self, **more)
 
 

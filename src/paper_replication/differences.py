@@ -151,7 +151,7 @@ def labels(data: xr.Dataset, dim: str) -> list[str]:
     >>> labels(orbits, "orbit"), labels(orbits.swap_dims(orbit="n"), "n")
     (['n = 1, restitution = 0.5', 'n = 2, restitution = 0.65'], ['n = 1', 'n = 2'])
     """
-    texts = [[f"{name} = {shown(x)}" for x in data[name].values] for name in along(data, dim)]
+    texts = [[f"{name} = {printable(x)}" for x in data[name].values] for name in along(data, dim)]
     return [", ".join(parts) for parts in zip(*texts, strict=True)]
 
 
@@ -270,7 +270,7 @@ def excerpt(old: object, new: object) -> str:
     >>> excerpt(f"{long}82.", f"{long}83.")
     'ame in both texts, and it is 82. → ame in both texts, and it is 83.'
     """
-    texts = [shown(old), shown(new)]
+    texts = [printable(old), printable(new)]
     if texts[0] == texts[1]:
         texts = [str(old), str(new)]
     if max(map(len, texts)) > 80:
@@ -284,10 +284,10 @@ def common(one: Sequence, other: Sequence) -> int:
     return len([*takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))])
 
 
-def shown(value: object) -> str:
+def printable(value: object) -> str:
     """A number with six digits; a text with its invisible characters escaped.
 
-    >>> shown(2 / 3), shown("5\N{NO-BREAK SPACE}%")
+    >>> printable(2 / 3), printable("5\N{NO-BREAK SPACE}%")
     ('0.666667', '5\\\\xa0%')
     """
     if isinstance(value, float | np.floating):

@@ -197,9 +197,9 @@ function zeroOn(test, grid, last = false) {
   const values = grid.map(test), turns = changes(values);
   const k = last ? turns.lastIndexOf(true) : turns.indexOf(true);
   if (k < 0) return NaN;
-  const found = rootOf(test, grid[k], grid[k + 1], values[k], values[k + 1]);
-  return Math.abs(test(found)) <= Math.min(Math.abs(values[k]), Math.abs(values[k + 1]))
-    ? found : NaN;
+  const root = rootOf(test, grid[k], grid[k + 1], values[k], values[k + 1]);
+  return Math.abs(test(root)) <= Math.min(Math.abs(values[k]), Math.abs(values[k + 1]))
+    ? root : NaN;
 }
 
 function saddleNode(contact, n) {
@@ -378,15 +378,15 @@ function contactModel(contact) {
     fold: n => of(folds, n, () => saddleNode(contact, n)),
     // The branch as it is drawn, with a gap where the ball would rise at the touch.
     drawn(n) {
-      const grid = scan(contact, n), found = [];
+      const grid = scan(contact, n), points = [];
       for (const [k, right] of grid.slice(1).entries())
         for (let j = 0; j < FINE; j++) {
           const eps = grid[k] + (right - grid[k]) * j / FINE, point = branchPoint(eps, contact, n);
           // Beyond, the ball would cross the table in contact: solutions, but of no ball.
-          if (eps > 0 && !(point.u < 0)) return found;
-          found.push(point.u < 0 ? point : {...point, amplitude: NaN});
+          if (eps > 0 && !(point.u < 0)) return points;
+          points.push(point.u < 0 ? point : {...point, amplitude: NaN});
         }
-      return found;
+      return points;
     },
     bifurcations(n) { return [this.fold(n), this.flip(n)].map(eps => branchPoint(eps, contact, n)); },
     flip(n) { return of(flips, n, () => periodDoubling(contact, n, this.fold(n))); },
@@ -460,9 +460,9 @@ function compareRows({names, rows}, again) {
   let worst = 0, where = "";
   rows.forEach((row, k) => {
     const expected = Object.fromEntries(names.map((name, i) => [name, row[i]]));
-    for (const [name, found] of Object.entries(again(expected))) {
-      const difference = expected[name] === null ? (Number.isNaN(found) ? 0 : Infinity)
-        : Math.abs(found - expected[name]) / Math.max(1, Math.abs(expected[name]));
+    for (const [name, computed] of Object.entries(again(expected))) {
+      const difference = expected[name] === null ? (Number.isNaN(computed) ? 0 : Infinity)
+        : Math.abs(computed - expected[name]) / Math.max(1, Math.abs(expected[name]));
       if (!(difference <= worst)) [worst, where] = [difference, `${name}, row ${k}`];
     }
   });

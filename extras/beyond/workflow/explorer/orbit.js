@@ -15,11 +15,11 @@ function insteadOf(orbit, {contact}) {
 }
 
 // Whether the restitution model is good enough, and the verdict as text.
-function verdictOf(found, question) {
-  const {n, side, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = found;
-  const [exact, simple] = found.orbits, error = found.errors.max_height, other = found.corrected.max_height;
+function verdictOf(comparison, question) {
+  const {n, side, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = comparison;
+  const [exact, simple] = comparison.orbits, error = comparison.errors.max_height, other = comparison.corrected.max_height;
   const heights = [exact, simple].map(orbit => orbit.max_height * (physical?.length ?? 1));
-  const instead = insteadOf(exact, found);
+  const instead = insteadOf(exact, comparison);
   const alike = ofContact === ofSimple || Boolean(exact.obstacle && simple.obstacle);
   if (side === "unstable" || (alike && !isMotion(exact)))
     return ["none", `No verdict: no ball stays on the ${n}-T orbit of either model (${
@@ -39,14 +39,14 @@ function verdictOf(found, question) {
 
 // Full lines are for balls: an orbit that is stable, and that a ball follows.
 const isFull = orbit => isMotion({...orbit, obstacle: orbit.is_stable ? obstacleOf(orbit) : ""});
-function drawBranch(found, {n, amplitude, physical: scales}) {
-  const [contact, simple, corrected] = found.models;
+function drawBranch(comparison, {n, amplitude, physical: scales}) {
+  const [contact, simple, corrected] = comparison.models;
   const top = 1.15 * Math.max(amplitude, 1.2,
-    ...found.limits.map(l => Number.isFinite(l.period_doubling) ? l.period_doubling : 0));
+    ...comparison.limits.map(l => Number.isFinite(l.period_doubling) ? l.period_doubling : 0));
   const {name, factor} = phaseAxis(scales), quarter = factor * Math.PI / 2;
   const plot = new Plot("branch", [0, top], [-quarter, quarter], amplitudeName(scales), name,
     `Branches of ${n}-T orbits: phase against amplitude. Saddle-node of the contact: `
-    + `${shown(found.limits[0].saddle_node)}, period doubling: ${shown(found.limits[0].period_doubling)}.`);
+    + `${shown(comparison.limits[0].saddle_node)}, period doubling: ${shown(comparison.limits[0].period_doubling)}.`);
   for (const [model, kind] of [[simple, "restitution"], [corrected, "corrected"]])
     for (const side of ["unstable", "stable"]) {
       const start = model.saddleNode(n), turned = {true: [], false: []};
@@ -59,19 +59,19 @@ function drawBranch(found, {n, amplitude, physical: scales}) {
       plot.line(turned[false], `curve unstable ${kind}`);
     }
   const points = contact.drawn(n), place = at => [at.amplitude, factor * at.phase];
-  const isOn = points.map(at => at.amplitude <= top && isFull(contactOrbit(at, found.contact, n)));
+  const isOn = points.map(at => at.amplitude <= top && isFull(contactOrbit(at, comparison.contact, n)));
   for (const stable of [true, false])
     plot.line(points.map((at, k) => isOn[k] === stable ? place(at) : [NaN, NaN]),
       `curve ${stable ? "" : "unstable "}spring-damper`);
   contact.bifurcations(n).forEach((at, k) => plot.mark(["circle", "square"][k], ...place(at), "bifurcation"));
-  found.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, factor * orbit.phase, `dot ${NAMES[k]}`, SIZES[k]));
+  comparison.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, factor * orbit.phase, `dot ${NAMES[k]}`, SIZES[k]));
 }
 
 // The curves' animation: the time it started at, and the time τ that it shows.
 let motion = null, started = null, clock = 0;
-function drawMotion(found, {n, amplitude, physical: scales}) {
+function drawMotion(comparison, {n, amplitude, physical: scales}) {
   const end = 2 * Math.PI * (n + 0.25), times = Array.from({length: 601}, (_, k) => k * end / 600);
-  const curves = found.orbits.map(orbit => orbit.exists
+  const curves = comparison.orbits.map(orbit => orbit.exists
     ? times.map(t => heightAt(orbit, t - orbit.phase)) : null);
   const heights = [amplitude, -amplitude, ...curves.flatMap(c => c ?? [])];
   const low = Math.min(...heights), high = Math.max(...heights), room = 0.05 * (high - low || 1);
@@ -80,18 +80,18 @@ function drawMotion(found, {n, amplitude, physical: scales}) {
   const across = t => clockAxis.factor * t, up = z => height.factor * z;
   const plot = new Plot("motion", [0, across(end)], [up(low - room), up(high + room)], clockAxis.name, height.name,
     `Height of the ball over one cycle in the models, and of the table. Maximum heights: `
-    + NAMES.map((name, k) => `${name} ${shown(up(found.orbits[k].max_height), 4)}`).join(", ") + ".");
+    + NAMES.map((name, k) => `${name} ${shown(up(comparison.orbits[k].max_height), 4)}`).join(", ") + ".");
   plot.line(times.map(t => [across(t), up(amplitude * Math.sin(t))]), "curve table");
   curves.forEach((curve, k) => curve
     && plot.line(times.map((t, i) => [across(t), up(curve[i])]),
-      `curve ${isMotion(found.orbits[k]) ? "" : "unstable "}${NAMES[k]}`));
-  const movers = found.orbits.map((orbit, k) => orbit.exists
+      `curve ${isMotion(comparison.orbits[k]) ? "" : "unstable "}${NAMES[k]}`));
+  const movers = comparison.orbits.map((orbit, k) => orbit.exists
     ? plot.add("circle", {class: `dot ${NAMES[k]}`, r: SIZES[k], cx: -20, cy: -20}) : null);
   const table = plot.add("rect", {class: "dot table", width: 18, height: 3, x: -40, y: -40});
   motion = {place(t) {
     table.setAttribute("x", plot.x(across(t)) - 9);
     table.setAttribute("y", plot.y(up(amplitude * Math.sin(t))));
-    found.orbits.forEach((orbit, k) => {
+    comparison.orbits.forEach((orbit, k) => {
       if (!orbit.exists) return;
       movers[k].setAttribute("cx", plot.x(across(t)));
       movers[k].setAttribute("cy", plot.y(up(heightAt(orbit, t - orbit.phase))));
@@ -100,16 +100,16 @@ function drawMotion(found, {n, amplitude, physical: scales}) {
   motion.place(clock);
 }
 
-function drawMultipliers(found) {
-  const sizes = found.orbits.filter(orbit => orbit.exists).flatMap(orbit => orbit.multipliers.map(m => Math.hypot(...m)));
+function drawMultipliers(comparison) {
+  const sizes = comparison.orbits.filter(orbit => orbit.exists).flatMap(orbit => orbit.multipliers.map(m => Math.hypot(...m)));
   const span = 1.1 * Math.max(1.4, ...sizes);
   const plot = new Plot("multipliers", [-span, span], [-span, span], "real part", "imaginary part",
     "Floquet multipliers in the plane: " + NAMES.map((name, k) =>
-      `${name} ${found.orbits[k].multipliers.map(m => `${shown(m[0], 3)} + ${shown(m[1], 3)} i`).join(" and ")}`)
+      `${name} ${comparison.orbits[k].multipliers.map(m => `${shown(m[0], 3)} + ${shown(m[1], 3)} i`).join(" and ")}`)
       .join("; ") + ".");
   const circle = Array.from({length: 181}, (_, k) => [Math.cos(k * Math.PI / 90), Math.sin(k * Math.PI / 90)]);
   plot.line(circle, "curve table");
-  found.orbits.forEach((orbit, k) => orbit.multipliers.forEach(
+  comparison.orbits.forEach((orbit, k) => orbit.multipliers.forEach(
     ([re, im]) => plot.mark("dot", re, im, `dot ${NAMES[k]}`, SIZES[k])));
 }
 
@@ -142,9 +142,9 @@ const IN_UNITS = {
   max_height: (x, {length}) => prefixed(x * length, "m", 6),
 };
 
-function fillTables(found, question) {
+function fillTables(comparison, question) {
   const cells = read => NAMES.map((name, k) => {
-    const [text, value, key] = read(found.orbits[k], found.limits[k], k);
+    const [text, value, key] = read(comparison.orbits[k], comparison.limits[k], k);
     return [text, value, key && `${name} ${key}`];
   });
   const scales = question.physical;
@@ -152,7 +152,7 @@ function fillTables(found, question) {
   $("orbit-units").textContent = scales ? "Λ is the acceleration of the table over g"
     : "Times Ωt, lengths Ω²z/g, velocities Ωż/g";
   $("orbit-rows").replaceChildren(
-    row("stability", cells((o, l, k) => [found.states[k], found.states[k], "state"])),
+    row("stability", cells((o, l, k) => [comparison.states[k], comparison.states[k], "state"])),
     row("admissible", cells(o => [!o.exists ? "no orbit" : o.obstacle ? `no: ${o.obstacle}` : "yes"])),
     row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
     row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
@@ -162,36 +162,36 @@ function fillTables(found, question) {
       .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
   );
   $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
-    [found.errors[key], found.corrected[key]].map((value, k) =>
+    [comparison.errors[key], comparison.corrected[key]].map((value, k) =>
       [`${signed(value, question.tolerance)}${Math.abs(value) <= question.tolerance ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
         value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
 }
 
 // Lengths, times and forces of the physical tab: words, value, unit and name.
-function physical(found, {amplitude, physical: {mass, time, length, stiffness, damping}}) {
-  const orbit = found.orbits[0], {omega, zeta} = found.contact, weight = mass * GRAVITY;
-  const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
+function physical(comparison, {amplitude, physical: {mass, time, length, stiffness, damping}}) {
+  const orbit = comparison.orbits[0], {omega, zeta} = comparison.contact, weight = mass * GRAVITY;
+  const start = freeAngle(comparison.contact) / dampedFrequency(comparison.contact) * time;
   const {depth, force} = loadsOf(orbit);
   return [
     ["frequency ratio ϖ", omega, "", "frequency_ratio"], ["damping ratio ζ", zeta, "", "damping_ratio"],
     ["stiffness k", stiffness, "N/m", "stiffness"], ["damping c", damping, "N s/m", "damping"],
     ["natural frequency ω", omega / time, "rad/s"],
-    ["restitution of a free impact", found.own, "", "measured_restitution"],
+    ["restitution of a free impact", comparison.own, "", "measured_restitution"],
     ["acceleration of the table Λ", amplitude, "", "amplitude"],
     ["stroke of the table", 2 * amplitude * length, "m", "stroke"],
     ["contact time, free", start, "s", "contact_time"],
     ["largest time step, a fiftieth of it", start / 50, "s", "largest"],
     ["static deflection", weight / stiffness, "m", "static_deflection"],
-    ["permanent contact up to Λ", found.thresholds[0], "", "permanent_contact"],
+    ["permanent contact up to Λ", comparison.thresholds[0], "", "permanent_contact"],
     ["maximum height", orbit.max_height * length, "m", "max_height"],
     ["duration of contact", orbit.contact_duration * time, "s", "contact_duration"],
     ["impact speed on the contact", -orbit.relative_impact_velocity * GRAVITY * time, "m/s", "impact_speed"],
     ["maximum compression (sampled)", depth * length, "m", "greatest_compression"],
     ["peak force (sampled)", force * weight, "N", "peak_force"],
     ["peak force over weight (sampled)", force, "", "peak_force_over_weight"],
-    ["corrected model: delay t_c", found.signature.delay * time, "s", "delay"],
-    ["corrected model: restitution r", found.signature.r, "", "restitution"],
-    ["corrected model: load σ", found.signature.load * time, "s", "load"],
+    ["corrected model: delay t_c", comparison.signature.delay * time, "s", "delay"],
+    ["corrected model: restitution r", comparison.signature.r, "", "restitution"],
+    ["corrected model: load σ", comparison.signature.load * time, "s", "load"],
   ];
 }
 

@@ -82,10 +82,10 @@ function show(hash, kept = DEFAULTS) {
   play(false);
   stage = null;
   if (asks) return showQuestion(state);
-  const question = questionOf(state), found = answer(question);
-  say(verdictOf(found, question));
-  const others = othersOf(found, question);
-  $("position").textContent = positionOf(found, question, others);
+  const question = questionOf(state), comparison = answer(question);
+  say(verdictOf(comparison, question));
+  const others = othersOf(comparison, question);
+  $("position").textContent = positionOf(comparison, question, others);
   // The button that was pressed is there still, and keeps the focus.
   const pressed = $("others").contains(document.activeElement);
   $("others").replaceChildren(...others.map(n => {
@@ -98,16 +98,16 @@ function show(hash, kept = DEFAULTS) {
   if (pressed) $("others").querySelector("[aria-pressed=true]")?.focus();
   $("starts").textContent = "Following balls with other starts …";
   count = () => {
-    $("starts").textContent = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
+    $("starts").textContent = endsOfStarts(comparison.contact, question.amplitude, comparison.orbits[0]);
     count = () => {};
   };
   // A slider that is dragged waits for no balls.
   counting = setTimeout(() => count(), PATIENCE);
-  fillTables(found, question);
+  fillTables(comparison, question);
   if (state.tab === "design") {
-    $("design-rows").replaceChildren(...physical(found, question).map(
+    $("design-rows").replaceChildren(...physical(comparison, question).map(
       ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
-    $("notes").replaceChildren(...notesOf(found, question).map(note => {
+    $("notes").replaceChildren(...notesOf(comparison, question).map(note => {
       const item = document.createElement("li");
       item.textContent = `${note}.`;
       return item;
@@ -119,9 +119,9 @@ function show(hash, kept = DEFAULTS) {
   $("table-moves").textContent = question.physical ? "Stroke of the table, from its lowest to its highest point: "
     + `${prefixed(2 * question.amplitude * question.physical.length, "m", 3)}.` : "";
   drawOrbit = () => {
-    drawBranch(found, question);
-    drawMotion(found, question);
-    drawMultipliers(found);
+    drawBranch(comparison, question);
+    drawMotion(comparison, question);
+    drawMultipliers(comparison);
   };
   drawOrbit();
 }

@@ -119,7 +119,7 @@ class Plot {
 function ticks(low, high) {
   const raw = (high - low) / 5, power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map(k => k * power).find(s => s >= raw);
-  const found = [];
-  for (let k = Math.ceil(low / step); k * step <= high + 1e-9 * step; k++) found.push(k * step);
-  return found;
+  const places = [];
+  for (let k = Math.ceil(low / step); k * step <= high + 1e-9 * step; k++) places.push(k * step);
+  return places;
 }

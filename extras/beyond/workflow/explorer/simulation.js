@@ -200,11 +200,11 @@ function heightSince({at, left, hang}, model, amplitude, since) {
 // It also goes on if its long contacts take too many steps.
 const SAME = 1e-7, NEAR = 1e-4, GRAIN = 1e-14, MOST_IMPACTS = 4000, MOST_WORK = 200000;
 function endOf(...start) {
-  const found = followed(...start, 0);
-  if (found.kind === "goes on" || found.kind === "stays") return found;
+  const end = followed(...start, 0);
+  if (end.kind === "goes on" || end.kind === "stays") return end;
   const other = followed(...start, GRAIN);
-  return ["kind", "periods", "impacts"].every(name => found[name] === other[name]) ? found
-    : {...found, kind: "goes on", periods: 0, impacts: 0};
+  return ["kind", "periods", "impacts"].every(name => end[name] === other[name]) ? end
+    : {...end, kind: "goes on", periods: 0, impacts: 0};
 }
 
 // A ball that comes near a `known` stable orbit is on it.

@@ -80,8 +80,8 @@ function parse(hash, kept = DEFAULTS) {
     refused.push(`scene = ${given.get("scene")} (the scenes are ${Object.keys(SCENES).join(", ")})`);
   given.delete("scene");
   for (const [choice, names] of Object.entries(WAYS)) {
-    const found = Object.keys(names).filter(way => given.has(names[way]));
-    if (found.length) state[choice] = found.at(-1);
+    const named = Object.keys(names).filter(way => given.has(names[way]));
+    if (named.length) state[choice] = named.at(-1);
   }
   for (const [name, text] of given) {
     const value = numberOf(text, name), range = rangeOf(name, tab);
@@ -139,7 +139,7 @@ function likewise(state, changed) {
   const units = changed.tab === "stage" && {design: "physical", orbit: "dimensionless"}[state.tab] || state.units;
   const next = {...state, units, ...changed}, [table, contact] = givenOf(next);
   const a = amplitudeOf(state), w = frequencyRatioOf(state), given = givenBy(a, w, next);
-  const differs = (found, wanted) => Math.abs(found - wanted) > 5e-6 * wanted;
+  const differs = (value, wanted) => Math.abs(value - wanted) > 5e-6 * wanted;
   if (differs(amplitudeOf(next), a)) next[table] = nearest(given[table], 6);
   if (differs(frequencyRatioOf(next), w)) next[contact] = nearest(given[contact], 6);
   return next;

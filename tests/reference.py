@@ -2,7 +2,8 @@
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from types import ModuleType
@@ -13,7 +14,8 @@ import xarray as xr
 import yaml
 from tests.checkout import ROOT
 
-from carbonelli2011.article import unlike_the_paper
+from carbonelli2011 import article
+from paper_replication import templates, texts
 from paper_replication.configuration import entries
 from paper_replication.datasets import Among, parameters, read
 
@@ -38,11 +40,27 @@ def reference() -> dict[str, xr.Dataset]:
         why = f"new, and not accepted yet: {', '.join(new)}. Run make accept, then make test"
         pytest.skip(why, allow_module_level=True)
     datasets = {path.stem: read(path) for path in FIGURES.glob("*.nc")}
-    if differences := unlike_the_paper(datasets):
+    if differences := article.unlike_the_paper(datasets):
         lines = "; ".join(differences)
         why = f"not of the parameters in paper.py: {lines}. Change one of them, run make accept"
         pytest.skip(why, allow_module_level=True)
     return datasets
+
+
+@contextmanager
+def without_gaps() -> Iterator[None]:
+    """Texts of the article in which a number that is missing is a failure, instead of a dash."""
+    fixed = texts.fixed
+
+    def finite(value, digits, shift=0):
+        assert np.isfinite(value)
+        return fixed(value, digits, shift)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(texts, "fixed", finite)
+        filters = templates.environment(article.TEMPLATES, True).filters
+        patch.setitem(filters, "fixed", finite)
+        yield
 
 
 def stage(name: str) -> ModuleType:

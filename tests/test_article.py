@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from jinja2 import TemplateSyntaxError
 from tests import independent
-from tests.reference import reference, with_more, with_parameters
+from tests.reference import reference, with_more, with_parameters, without_gaps
 
 from bouncing_ball import restitution, spring_damper
 from bouncing_ball.errors import errors_of_orbits, orbits_along
@@ -220,7 +220,6 @@ def template(path: Path) -> str:
     text = text.partition("## References")[0]
     allowed = [
         r"(?s:<(style|pre)>.*?</\1>)",
-        r"<code>.*?</code>",
         r"\bDETC2011-47870 \(2011\)",
         r"(?s:\{%.*?%\})",
         r"(?s:\{\{.*?\}\})",
@@ -244,12 +243,14 @@ def template(path: Path) -> str:
 
 @pytest.mark.parametrize("path", TEMPLATES, ids=lambda path: path.name)
 def test_templates_have_no_typed_numbers(path):
+    """A result that would stay as it is when its dataset changes is caught."""
     lines = [line for line in template(path).splitlines() if re.search(r"\d", line)]
     assert lines == []
 
 
 @pytest.mark.parametrize("path", TEMPLATES, ids=lambda path: path.name)
 def test_expressions_of_templates_have_no_typed_numbers(path):
+    """A typed result that would pass for a computed one is caught."""
     text = path.read_text("utf-8")
     expressions = re.findall(r"\{\{(.*?)\}\}|\{%(.*?)%\}", text, flags=re.DOTALL)
     bare = [re.sub(r'"[^"]*"', "", expression) for pair in expressions for expression in pair]
@@ -290,14 +291,17 @@ def test_the_article_does_not_depend_on_the_number_of_points(data):
 
 
 @pytest.mark.parametrize("name", TEXTS)
-def test_texts_of_the_paper_have_no_gaps(name):
-    text = text_of_reference(name)
+def test_texts_of_the_paper_have_no_gaps(name, data):
+    """A number that a dataset lacks, or a claim that is not judged, is caught."""
+    with without_gaps():
+        text = text_of(name, data)
     assert "{{" not in text and "{%" not in text
-    assert not re.search(r"(= |to |by )–|other parameters: |there is no dataset", text)
+    assert "another run" not in text
 
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_verdicts_are_those_of_the_claims(name, data):
+    """A verdict that is typed in a template is caught."""
     unjudged = data["claims"].copy()
     # The article compares ends of Table 1.
     ends = (unjudged.item == "Table 1") & (name == "paper")
@@ -418,7 +422,9 @@ def test_largest_and_smallest_numbers_are_those_of_their_own_formulas(name, data
         assert any(
             distance <= 0.500001 * unit for distance, unit in zip(off, units, strict=True)
         ), what
-    for n, number in re.findall(r"n = (\d) up to r ≈ (\d+\.\d+)", text):
+    limits = re.findall(r"n = (\d) up to r ≈ (\d+\.\d+)", text)
+    assert bool(limits) == (name == "paper")
+    for n, number in limits:
         fails = data["validity_map"].failing_up_to.sel(n=int(n)).values
         assert np.nanmin(abs(fails - float(number))) <= 0.005
 
@@ -434,7 +440,6 @@ def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
         for r, amplitude in zip(data[name].restitution, data[name].amplitude, strict=True)
     }
     assert errors.sizes["orbit"] == len(curves) == 9
-    assert "On the 9 curves of Figs. 5, 6 and 10" in text_of_reference("paper")
     beyond = errors > LIMIT
     least = np.array(["r = 0.1," in orbit for orbit in errors.orbit.values])
     assert least.sum() == 1

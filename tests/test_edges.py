@@ -17,13 +17,12 @@ import pytest
 import yaml
 from tests import independent
 from tests.checkout import ROOT
-from tests.reference import CONFIG, ENTRIES, reference, stage
+from tests.reference import CONFIG, ENTRIES, reference, stage, without_gaps
 
 from bouncing_ball.orbits import NoOrbit
 from carbonelli2011 import article, figures, index, paper, tables
 from carbonelli2011.claims import CLAIMS, CONTACT_OF_FIG11, judge, table1_ends
 from carbonelli2011.figures import Empty
-from paper_replication import templates, texts
 from paper_replication.configuration import mistakes
 from paper_replication.datasets import computed, other_parameters, settings_of
 from paper_replication.verdicts import VERDICTS, answer
@@ -300,12 +299,6 @@ def assert_numbers_are_true(name: str, data) -> None:
             assert {row[4] + row[6] for row in tables.table1(data)[1:]} == {""}
 
 
-def finite(value, digits, shift=0, fixed=texts.fixed) -> str:
-    """`texts.fixed` for a number that is there."""
-    assert np.isfinite(value)
-    return fixed(value, digits, shift)
-
-
 @cache
 def named_in(text: str) -> set[str]:
     """The datasets that a text names."""
@@ -334,10 +327,7 @@ def assert_texts_are_true(changed: dict) -> None:
                 unasked.add(judgement["reason"])
     if unasked or paper.changed_parameters(datasets):
         return
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(texts, "fixed", finite)
-        filters = templates.environment(article.TEMPLATES, True).filters
-        patch.setitem(filters, "fixed", finite)
+    with without_gaps():
         for name in ("paper", "supplement"):
             if changed.keys() & named_in(name):
                 assert "another run" not in article.text(name, datasets)
@@ -356,6 +346,7 @@ def test_a_configuration_at_an_edge_gives_true_results_or_one_line(section, name
             other = other_parameters(name, data, paper.PARAMETERS.get(name, {}))
             assert_picture_is_true(name, data, not other)
     except (NoOrbit, Empty) as error:
+        # A message without a remedy is caught.
         assert re.search(r"give|must|need|above", str(error)) and "\n" not in str(error)
         return
     assert_numbers_are_true(name, data)
@@ -394,6 +385,7 @@ def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_
 
 
 def test_another_release_gives_true_pages():
+    """A number that is missing on the page, or a claim that raises, is caught."""
     forced = {}
     for section, name in computed_entries():
         known = settings_of(stage(section).STAGE[name])
@@ -408,5 +400,5 @@ def test_another_release_gives_true_pages():
     datasets = reference() | forced
     datasets["claims"] = judge(datasets).assign_attrs(reference()["claims"].attrs)
     page = re.sub(r"(?s)<style>.*?</style>", "", index.list_of_figures("html", datasets, ENTRIES))
-    assert not re.search(r"\bnan\b|\binf\b|\bNone\b(?! of)|\w+Error\b", page)
+    assert not re.search(r"\bnan\b|\binf\b|\bNone\b|\w+Error\b", page)
     assert article.text("paper", datasets).startswith("# Article of another run")

@@ -60,7 +60,9 @@ def numbers_of_readme() -> set[str]:
 
 
 def test_decimal_numbers_of_readme_are_those_of_the_datasets():
-    """Others are parameters of the ball that its pictures show."""
+    """A number that its dataset no longer has is caught. Others are parameters of the ball that the
+    pictures show.
+    """
     prose = re.sub(r"```.*?```|Python [^)]*", "", text("README.md"), flags=re.DOTALL)
     typed = set(re.findall(r"(?<![\w.])\d+\.\d+(?![\w.]*\d)", prose))
     computed = numbers_of_readme()
@@ -69,7 +71,7 @@ def test_decimal_numbers_of_readme_are_those_of_the_datasets():
 
 
 def test_counts_of_readme_are_those_of_the_datasets():
-    """Each stands before its verdict."""
+    """A count that a new claim or orbit changes is caught. Each stands before its verdict."""
     data = reference()
     judged = judgements.claims_of(data["claims"], "printed number")
     ends = [claim for claim in judged if claim["item"] == "Table 1"]
@@ -94,7 +96,7 @@ def test_counts_of_readme_are_those_of_the_datasets():
     needed = data["validity_map"].enough_from.sel(quantity="summit")
     assert f"ϖ = {texts.fixed(needed.max(), 0)}" in readme
     stable = data["validity_map"].stable.sum().item()
-    assert f"We checked {stable} n-T orbits that are stable in both models" in readme
+    assert f" {stable} n-T orbits" in readme
 
 
 def two_digits(values) -> list[float]:
@@ -156,7 +158,9 @@ def damped_duration(damping: Callable, r: float, release: str, power: float = 1.
 def test_how_long_contacts_last_depends_on_r_law_and_release():
     """docs/your-ball.md, by an integration of this test."""
     page = text("docs/your-ball.md")
-    for part, r in re.findall(r"1/(\d+) at(?: r =)? ([\d.]+\d)", page):
+    parts = re.findall(r"1/(\d+) at(?: r =)? ([\d.]+\d)", page)
+    assert len(parts) == 3
+    for part, r in parts:
         longest = damped_duration(np.ones_like, float(r), "force", power=1) / (2 * np.pi * 100)
         assert float(part) == np.ceil(1 / longest)
     for r in (0.9, 0.5, 0.3):
@@ -181,7 +185,9 @@ def test_how_long_contacts_last_depends_on_r_law_and_release():
 
 
 def test_the_journal_accepts_the_metadata():
-    """Its converter measures addresses, LaTeX reads the texts, and an abstract has 250 words."""
+    """Its converter measures addresses, LaTeX reads the texts, and an abstract has 250 words and
+    stands alone.
+    """
     metadata = yaml.safe_load(text("metadata.yaml"))
     assert all(isinstance(affiliation["address"], str) for affiliation in metadata["affiliations"])
     assert re.findall(r"(?<!\\)[%&#]", " ".join(map(str, metadata.values()))) == []
@@ -199,6 +205,7 @@ def test_the_authors_are_the_same_everywhere():
 
 @pytest.mark.parametrize("folder", ["", "extras/beyond/", "extras/contacts/"])
 def test_versions_agree(folder):
+    """A file that a release, or the end of one, leaves behind is caught."""
     cited = yaml.safe_load(text(f"{folder}CITATION.cff"))
     assert f'version = "{cited["version"]}"' in text(f"{folder}pyproject.toml")
     date = cited.get("date-released", "unreleased")
@@ -212,6 +219,7 @@ def test_versions_agree(folder):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_links_pictures_and_files_that_are_named_exist(page):
+    """A file that was renamed, moved or removed is caught."""
     content = text(page)
     shown = re.sub(r"```.*?```", "", content, flags=re.DOTALL)
     targets = re.findall(r"\]\(([^)\s]+)\)", shown) + re.findall(r'src="([^"]+)"', shown)
@@ -244,7 +252,9 @@ def test_scripts_of_a_page_run_as_written_and_make_what_it_names(page, tmp_path,
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
     (tmp_path / "figures").symlink_to(ROOT / "figures")
-    for script in re.findall(r"^```python\n(.*?)^```", text(page), re.MULTILINE | re.DOTALL):
+    scripts = re.findall(r"^```python\n(.*?)^```", text(page), re.MULTILINE | re.DOTALL)
+    assert scripts
+    for script in scripts:
         exec(script, {})
         named = re.findall(r'"(\w+\.(?:pdf|png|csv|tex))"', script)
         assert named and all((tmp_path / file).stat().st_size > 200 for file in named)

@@ -24,8 +24,7 @@ FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}
 IMPACTS = CONFIG["restitution_model"]["three_balls"]["impacts"]
 TABLES = {name for name, entry in ENTRIES.items() if entry.get("table")}
 TEXTS = {"claims", "choices", "article"}
-NO_NUMBER = {"carbonelli2011/variables.py", "paper_replication/provenance.py"}
-NO_NUMBER |= {"carbonelli2011/existence.py"}
+NO_NUMBER = {"paper_replication/provenance.py"}
 NO_NUMBER |= {f"paper_replication/{name}.j2" for name in ("diff.html", "diff.txt", "verdict")}
 """Modules and templates that decide no number: they are in no list of code."""
 MODELS = {f"bouncing_ball/{path.name}" for path in (ROOT / "src/bouncing_ball").iterdir()}
@@ -173,7 +172,7 @@ def imports(package: str) -> set[str]:
 
 
 def test_the_models_and_what_any_replication_needs_import_no_other_package():
-    libraries = {"numpy", "scipy", "xarray", "bouncing_ball"}
+    libraries = {"numpy", "scipy", "bouncing_ball"}
     assert imports("bouncing_ball") <= sys.stdlib_module_names | libraries
     assert not imports("paper_replication") & {"bouncing_ball", "carbonelli2011"}
 

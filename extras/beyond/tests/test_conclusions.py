@@ -260,7 +260,9 @@ def test_a_ball_stays_on_what_is_called_stable(k):
     r, size, phase = rng.uniform(0.01, 0.3), rng.uniform(0.02, 0.15), rng.uniform(0, 6.28)
     table = bb.Table([(1, 1.0, 0.0), (3, size, phase)])
     ball = bb.Rigid(r)
-    for low, high in bb.limits(ball, table=table).stable_ranges:
+    ranges = bb.limits(ball, table=table).stable_ranges
+    assert ranges
+    for low, high in ranges:
         for amplitude in np.linspace(low, high, 9)[1:-1]:
             near = [
                 orbit for orbit in bb.orbits(ball, amplitude=amplitude, table=table) if orbit.stable

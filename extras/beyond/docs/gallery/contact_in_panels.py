@@ -26,7 +26,7 @@ root_time._next_panel = recorded
 impact = law.first_impact(1.0, 2.0, 0.9)[1]
 # A panel that was too long is followed by one with the same start.
 starts = [start for start, _, _ in panels[1:]] + [np.inf]
-accepted = [panel for panel, after in zip(panels, starts, strict=True) if after > panel[0]]
+accepted = [record for record, after in zip(panels, starts, strict=True) if after > record[0]]
 
 figure, (above, below) = drawing.panels(5.0, rows=2)
 shades = colours(len(accepted))

@@ -240,6 +240,37 @@ def test_links_pictures_and_files_that_are_named_exist(page):
     assert [file for file in named if not (ROOT / file).exists()] == []
 
 
+def slug(heading: str) -> str:
+    """The anchor that a forge gives to a heading."""
+    visible = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
+    return re.sub(r"[^\w -]", "", visible.lower()).replace(" ", "-")
+
+
+def test_links_to_sections_lead_to_a_heading():
+    """On the pages of all packages; a heading that was renamed or merged is caught."""
+    folders = [folder for top in (ROOT, *ROOT.glob("extras/*")) for folder in (top, top / "docs")]
+    written = {
+        path.resolve(): re.sub(r"```.*?```", "", path.read_text("utf-8"), flags=re.DOTALL)
+        for folder in folders
+        for path in folder.glob("*.md")
+    }
+    anchors = {
+        path: {slug(heading) for heading in re.findall(r"^#+ (.*)$", content, re.MULTILINE)}
+        for path, content in written.items()
+    }
+    links = [
+        (path, target, anchor)
+        for path, content in written.items()
+        for target, anchor in re.findall(r"\]\(((?:[^)\s#:]+\.md)?)#([^)\s]+)\)", content)
+    ]
+    assert len(links) > 40
+    assert [
+        (path.name, target, anchor)
+        for path, target, anchor in links
+        if anchor not in anchors.get((path.parent / target).resolve() if target else path, ())
+    ] == []
+
+
 @pytest.mark.parametrize("page", [page for page in PAGES if ">>> " in text(page)])
 def test_examples_of_the_pages_run(page, monkeypatch):
     monkeypatch.chdir((ROOT / page).parent)

@@ -128,6 +128,15 @@ def test_ranges_on_a_table_with_several_saddle_nodes():
         assert expected == any(low < amplitude < high for low, high in ranges)
 
 
+@pytest.mark.parametrize(("ratio", "r"), [(1.0, 0.5), (2.5, 0.1)])
+def test_a_range_without_a_saddle_node_begins_where_the_flight_vanishes(ratio, r):
+    """At the threshold of permanent contact, Eq. 33."""
+    zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
+    threshold = np.sqrt(1 + (4 * zeta**2 - 2) / ratio**2 + 1 / ratio**4)
+    low, _ = bb.limits(bb.SpringDamper(ratio, restitution=r)).stable_ranges[0]
+    assert low == pytest.approx(threshold, rel=1e-10)
+
+
 def test_limits_are_two_values_one_list_of_ranges_for_each_ball():
     fold, doubling = bb.limits(bb.Rigid(0.5))
     several = bb.limits(bb.Rigid([0.5, 0.7]))

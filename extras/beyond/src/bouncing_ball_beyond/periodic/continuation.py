@@ -434,6 +434,8 @@ def _stable_ranges(branch: FollowedBranch) -> tuple[tuple[float, float], ...]:
         if np.array_equal(*ends):
             continue
         z = np.array([orbit.z for orbit in path[first : last + 1]])
+        # A branch that ends at a special orbit has this orbit twice.
+        z = z[np.insert(np.diff(z, axis=0).any(axis=1), 0, True)]
         if len(z) == 2:
             middle = _between(branch.equations, z[[0]], z[[1]], 0.5)
             z = np.insert(z, 1, middle, axis=0)

@@ -167,9 +167,11 @@ def test_how_long_contacts_last_depends_on_r_law_and_release():
         pulling = damped_duration(np.ones_like, r, "displacement", power=1)
         assert pulling / (2 * np.pi / 200) > 100
     elastic = free_impact(np.ones_like, 0.0, "displacement")[1]
-    tsuji, kuwabara_kono, hunt_crossley = (lambda x: x**0.25), np.sqrt, (lambda x: x**1.5)
-    pulling = damped_duration(tsuji, 0.7, "displacement") / elastic
-    ended = [damped_duration(law, 0.7, "force") for law in (tsuji, kuwabara_kono, hunt_crossley)]
+    # Dampings of Tsuji, of Kuwabara and Kono, and of Hunt and Crossley: powers of the depth.
+    powers = (0.25, 0.5, 1.5)
+    dampings = [lambda x, power=power: x**power for power in powers]
+    pulling = damped_duration(dampings[0], 0.7, "displacement") / elastic
+    ended = [damped_duration(damping, 0.7, "force") for damping in dampings]
     changes = [
         round(100 * float(change)) for change in [pulling - 1, *(np.array(ended) / elastic - 1)]
     ]

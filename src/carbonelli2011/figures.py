@@ -606,7 +606,7 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
     `shown` lists the branches of each panel. The title names branches without orbits.
     """
     absent = [name for panel in shown for name, branch, _ in panel if not has_orbits(branch)]
-    present = [[item for item in panel if has_orbits(item[1])] for panel in shown]
+    present = [[pair for pair in panel if has_orbits(pair[1])] for panel in shown]
     present = [panel for panel in present if panel]
     figure, grid = panels(height, rows=len(present), sharex=True, squeeze=False)
     column = grid[:, 0]
